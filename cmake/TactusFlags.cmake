@@ -1,0 +1,21 @@
+# Flags that every target shares.  No NDEBUG anywhere: Simbody's headers change their class layout on it.
+# No -march=native and no -ffast-math, and no contraction into fused multiply-add: golden runs must repeat.
+set(CMAKE_CXX_FLAGS_RELEASE "-O3" CACHE STRING "" FORCE)
+set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g" CACHE STRING "" FORCE)
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g" CACHE STRING "" FORCE)
+
+option(TACTUS_WERROR "Warnings are errors" OFF)
+option(TACTUS_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
+
+add_library(tactus_flags INTERFACE)
+target_compile_features(tactus_flags INTERFACE cxx_std_20)
+target_compile_options(tactus_flags INTERFACE -ffp-contract=off -Wall -Wextra $<$<BOOL:${TACTUS_WERROR}>:-Werror>)
+target_compile_definitions(tactus_flags INTERFACE TACTUS_VERSION="${PROJECT_VERSION}"
+                           $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
+target_include_directories(tactus_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                           $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tactus>)
+if(TACTUS_SANITIZE)
+  target_compile_options(tactus_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+                                                -fno-omit-frame-pointer)
+  target_link_options(tactus_flags INTERFACE -fsanitize=address,undefined)
+endif()

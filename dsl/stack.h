@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/control/element_values.h"
+#include "framework/description/robot.h"
+#include "framework/description/scene.h"
+
+namespace tactus::dsl {
+
+/// An element that a factory will turn into a task or a signal.
+struct ElementInstance {
+  control::ElementValues values;                                   ///< values.row().name is the element
+  std::string name;
+  description::Place place;                                        ///< of its '<'
+  std::string path;
+};
+
+struct LevelDescription {
+  int priority = 1;
+  std::optional<double> weight;
+  bool strict = false;
+  std::vector<ElementInstance> tasks;
+  description::Place place;
+};
+
+/// `jitter` of an object: each coordinate moves by a uniform draw from ±jitter (m), drawn from the run's seed.
+struct ObjectDescription {
+  description::Object object;                                      ///< pose without jitter, `on` resolved
+  Eigen::Vector3d jitter = Eigen::Vector3d::Zero();
+  std::string on;                                                  ///< the object that carries it, whose jitter it shares; "" = none
+};
+
+struct RunOptions {
+  double duration = 10;                                            ///< s
+  std::uint64_t seed = 1;
+  std::string columns = "default";                                 ///< "default" | "all"
+  double record_rate = 100;                                        ///< Hz, rows of log.csv
+};
+
+/// A stack, read and checked, nothing built yet.
+struct Stack {
+  std::string name;
+  std::string file;
+  std::vector<std::string> plugins;                                ///< named by <plugin>
+  description::Robot robot;
+  std::string robot_model;                                         ///< as written
+  Eigen::VectorXd start_q;                                         ///< dof
+  std::vector<ObjectDescription> objects;
+  Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);
+  std::vector<ElementInstance> signals;
+  std::vector<LevelDescription> levels;
+  ElementInstance controller;                                      ///< base attributes: backend, rate
+  control::ElementValues back_end;                                 ///< the options of the chosen back end
+  RunOptions run;
+  std::map<std::string, std::string> files;                        ///< every file read → its content, for hashes and copies
+
+  /// The scene with jitter drawn from the seed; the same seed gives the same scene on every machine.
+  description::Scene scene(std::uint64_t seed) const;
+};
+
+}  // namespace tactus::dsl

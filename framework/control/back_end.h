@@ -1,0 +1,40 @@
+#pragma once
+
+#include "framework/control/tick_problem.h"
+#include "framework/control/tick_solution.h"
+
+namespace tactus::control {
+
+/// What a back end can honour; a stack that asks for more is refused at its line.
+struct Abilities {
+  bool strict_levels = false;
+  bool inequalities = false;
+  bool torque_limits = false;
+  bool force_bounds = false;
+  bool friction_cones = false;
+};
+
+/// Turns a tick problem into a torque.
+///
+/// `prepare` takes the memory for every problem of the given shape (same levels, tasks and capacities);
+/// `solve` takes none in back ends that declare themselves free of allocation.  `solve` never throws for
+/// numerical reasons: it says `infeasible` or `failed` and leaves a finite torque.
+class BackEnd {
+ public:
+  virtual ~BackEnd() = default;
+
+  const Abilities& abilities() const { return abilities_; }
+  void prepare(const TickProblem& shape, TickSolution& solution);
+  void solve(const TickProblem& problem, TickSolution& solution) { doSolve(problem, solution); }
+
+ protected:
+  explicit BackEnd(Abilities abilities) : abilities_(abilities) {}
+
+ private:
+  virtual void doPrepare(const TickProblem& shape) = 0;
+  virtual void doSolve(const TickProblem& problem, TickSolution& solution) = 0;
+
+  Abilities abilities_;
+};
+
+}  // namespace tactus::control

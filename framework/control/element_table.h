@@ -1,0 +1,89 @@
+#pragma once
+
+#include <deque>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The one table that says what may stand in a stack: elements, attributes, types, units, defaults, ranges.
+/// Built-ins and plugins add rows by the same call; reading, defaults, checks, the XSD and the manual come from it.
+namespace tactus::control {
+
+enum class ValueType {
+  text,                                                            ///< any string
+  identifier,                                                      ///< a new name: letters, digits, '_' and '-'; a letter first
+  flag,                                                            ///< true | false
+  integer,
+  real,
+  reals,                                                           ///< numbers separated by blanks
+  points,                                                          ///< groups of `count` reals separated by ';'
+  choice,                                                          ///< one of `choices`
+  port,                                                            ///< signal.port, of the row's `port_type`
+  link,                                                            ///< a link of the robot
+  links,                                                           ///< link or link-group names separated by blanks
+  joints,                                                          ///< joint or joint-group names separated by blanks
+  object,                                                          ///< an object of the scene
+  element_class,                                                   ///< a <defaults> class
+  file                                                             ///< a file or model name
+};
+
+struct AttributeRow {
+  std::string name;
+  ValueType type = ValueType::text;
+  std::string unit;                                                ///< "N", "m", "N m/rad", "1"; "" for what has none
+  std::optional<std::string> default_text;                         ///< as it would be written
+  bool required = false;
+  std::string description;
+  double lower = -std::numeric_limits<double>::infinity();         ///< each number ≥ lower (> when lower_open)
+  double upper = std::numeric_limits<double>::infinity();
+  bool lower_open = false;
+  int count = 0;                                                   ///< numbers in `reals`, or in a group of `points`; 0 = any
+  std::vector<std::string> choices;                                ///< for `choice`; for joints/links: extra words, e.g. "free"
+  std::string port_type;                                           ///< for `port`
+};
+
+struct ChildRow {
+  std::string element;                                             ///< name, or "@task", "@signal", "@shape" for all of a kind
+  int min = 0;
+  int max = -1;                                                    ///< -1 = any number
+};
+
+/// An output that a signal offers, written signal.port.
+struct PortRow {
+  std::string name;
+  std::string type;                                                ///< "contact-set", "point-set", "feature", …
+  std::string unit;
+  std::string description;
+};
+
+enum class ElementKind { structure, shape, task, signal, back_end };
+
+struct ElementRow {
+  std::string name;
+  ElementKind kind = ElementKind::structure;
+  std::string description;
+  std::string source;                                              ///< equation or paper, "" when it has none
+  std::vector<AttributeRow> attributes;
+  std::vector<ChildRow> children;
+  std::vector<PortRow> ports;                                      ///< of signals
+
+  const AttributeRow* attribute(std::string_view name) const;
+};
+
+class ElementTable {
+ public:
+  /// Throws std::invalid_argument when the name is taken or a row contradicts itself (its default is out of range, …).
+  void add(ElementRow row);
+  /// Back ends are looked up apart: their rows are the extra attributes of <controller backend="NAME">.
+  const ElementRow* find(std::string_view name) const;
+  const ElementRow* findBackEnd(std::string_view name) const;
+  const std::deque<ElementRow>& rows() const { return rows_; }
+
+ private:
+  std::deque<ElementRow> rows_;
+};
+
+}  // namespace tactus::control

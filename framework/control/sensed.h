@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+/// What the robot feels at one instant: plain data from the plant to the controller.
+namespace tactus::control {
+
+/// One touch of a link feature (a capsule) on one primitive of an object.
+struct ContactRecord {
+  int link = -1;                                                   ///< index into description::Robot::links
+  int object = -1;                                                 ///< index into description::Scene::objects
+  Eigen::Vector3d point_W = Eigen::Vector3d::Zero();               ///< m
+  Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();              ///< unit, out of the robot into the object
+  double depth = 0;                                                ///< m, > 0 while overlapping
+  double force_N = 0;                                              ///< along the normal, what the robot does to the object
+  Eigen::Vector3d friction_W = Eigen::Vector3d::Zero();            ///< N, tangential, what the robot does to the object
+};
+
+struct Sensed {
+  double time = 0;                                                 ///< s
+  Eigen::VectorXd q;                                               ///< rad or m, dof
+  Eigen::VectorXd qd;                                              ///< dof
+  std::vector<ContactRecord> contacts;                             ///< in the plant's fixed order
+};
+
+}  // namespace tactus::control

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "framework/description/place.h"
+
+/// The world around the robot as plain data.  SI units, world frame W, z up.
+namespace tactus::description {
+
+/// The half space below z = 0 of its own frame; its outward normal is +z.
+struct PlanePrimitive {};
+/// Full edge lengths (m).
+struct BoxPrimitive {
+  Eigen::Vector3d size;
+};
+struct SpherePrimitive {
+  double radius;
+};
+/// Axis along z of its own frame, centred; `length` is the full height.
+struct CylinderPrimitive {
+  double radius;
+  double length;
+};
+/// Axis along z, centred; `length` is that of the straight part.
+struct CapsulePrimitive {
+  double radius;
+  double length;
+};
+
+using PrimitiveShape = std::variant<PlanePrimitive, BoxPrimitive, SpherePrimitive, CylinderPrimitive, CapsulePrimitive>;
+
+struct Primitive {
+  PrimitiveShape shape;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< in the object frame
+};
+
+/// How a surface pushes back.  Normal force: Hunt–Crossley, k δ (1 + c δ̇) with δ the depth; friction: bristles.
+struct ContactMaterial {
+  double stiffness = 2000;                                         ///< N/m
+  double dissipation = 2;                                          ///< s/m
+  double friction = 0.2;                                           ///< Coulomb coefficient μ
+};
+
+/// A fixed object: the union of its primitives.
+struct Object {
+  std::string name;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< object frame in W, jitter already drawn
+  std::vector<Primitive> primitives;
+  ContactMaterial material;
+  Place place;
+};
+
+struct Scene {
+  std::vector<Object> objects;
+  Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);          ///< m/s²
+};
+
+}  // namespace tactus::description

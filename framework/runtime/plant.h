@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+
+#include "framework/control/sensed.h"
+
+namespace tactus::runtime {
+
+/// The plant left the region where its answers mean anything (non-finite or runaway state).
+class PlantError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A simulated (or real) robot in its world.
+class Plant {
+ public:
+  virtual ~Plant() = default;
+
+  /// Positions, velocities and contacts now.  The reference stays valid; the content changes with `advance`.
+  virtual const control::Sensed& sense() const = 0;
+  /// Holds the joint torques for `duration` seconds.  Throws PlantError, with the state of the last good step kept.
+  virtual void advance(const Eigen::VectorXd& torque, double duration) = 0;
+};
+
+}  // namespace tactus::runtime
