@@ -25,6 +25,7 @@ struct LevelDescription {
   bool strict = false;
   std::vector<ElementInstance> tasks;
   description::Place place;
+  description::Place strict_place;                                 ///< of the value of `strict`, where it is written
 };
 
 /// `jitter` of an object: each coordinate moves by a uniform draw from ±jitter (m), drawn from the run's seed.
@@ -32,6 +33,8 @@ struct ObjectDescription {
   description::Object object;                                      ///< pose without jitter, `on` resolved
   Eigen::Vector3d jitter = Eigen::Vector3d::Zero();
   std::string on;                                                  ///< the object that carries it, whose jitter it shares; "" = none
+  control::ElementValues values;                                   ///< as read; `pose` is that in the carrier's top
+  std::vector<control::ElementValues> shapes;                      ///< of object.primitives, as read
 };
 
 struct RunOptions {
@@ -48,6 +51,7 @@ struct Stack {
   std::vector<std::string> plugins;                                ///< named by <plugin>
   description::Robot robot;
   std::string robot_model;                                         ///< as written
+  std::string robot_file;                                          ///< where it was found
   Eigen::VectorXd start_q;                                         ///< dof
   std::vector<ObjectDescription> objects;
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);
@@ -57,6 +61,8 @@ struct Stack {
   control::ElementValues back_end;                                 ///< the options of the chosen back end
   RunOptions run;
   std::map<std::string, std::string> files;                        ///< every file read → its content, for hashes and copies
+  /// Every file that another one brought in → the places that did, innermost first.
+  std::map<std::string, std::vector<description::Place>> included_from;
 
   /// The scene with jitter drawn from the seed; the same seed gives the same scene on every machine.
   description::Scene scene(std::uint64_t seed) const;

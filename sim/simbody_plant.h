@@ -6,24 +6,31 @@
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
 #include "framework/runtime/plant.h"
+#include "sim/contact_force.h"
 
 namespace tactus::sim {
 
 struct PlantOptions {
   double step = 0.25e-3;                                           ///< s, semi-explicit Euler
   double velocity_limit = 100;                                     ///< rad/s or m/s; beyond it the state is a runaway
+  ContactOptions contact;
 };
 
-/// The robot in its scene, simulated by Simbody with Tactus's own contact force (see contact_force.h).
+/// The robot in its scene, simulated by Simbody (tree, gravity, forward dynamics) with Tactus's own contact force (see
+/// contact_force.h) and joint damping, friction and stops (see joint_resistance.h).  Semi-explicit Euler at a fixed
+/// step h: q̇ ← q̇ + h q̈(q, q̇, τ), q ← q + h q̇; time is a step count times h.  The same inputs give the same bits.
 /// Built from the description alone: nothing of framework/dynamics is used.
 class SimbodyPlant final : public runtime::Plant {
  public:
-  /// Throws runtime::PlantError when the robot has moving links without mass or Simbody refuses it.
+  /// Throws runtime::PlantError when the robot has moving links without mass, Simbody refuses it, or the start has the
+  /// wrong size, is not finite or lies outside the joint limits.
   SimbodyPlant(const description::Robot& robot, const description::Scene& scene, const Eigen::VectorXd& start_q,
                const PlantOptions& options = {});
   ~SimbodyPlant() override;
 
   const control::Sensed& sense() const override;
+  /// `duration` is a whole number of steps.  A step whose result is not finite or beyond the velocity limit is not
+  /// taken: PlantError says joint, value and time, and `sense` shows the last good step.
   void advance(const Eigen::VectorXd& torque, double duration) override;
 
  private:

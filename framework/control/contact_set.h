@@ -42,6 +42,11 @@ struct FeatureEstimate {
   int points = 0;                                                  ///< touched points that the estimate rests on
 };
 
+/// A fixed set of links, e.g. those that a contacts signal calls desired.
+struct FrameSet {
+  std::vector<int> frames;                                         ///< indices into Model::frames(), rising
+};
+
 /// Points touched so far.
 struct TouchedPoint {
   double time = 0;
@@ -65,6 +70,8 @@ template <>
 struct PortType<TouchedPoints> { static constexpr const char* name = "touched-points"; };
 template <>
 struct PortType<FeatureEstimate> { static constexpr const char* name = "feature"; };
+template <>
+struct PortType<FrameSet> { static constexpr const char* name = "frame-set"; };
 template <>
 struct PortType<double> { static constexpr const char* name = "scalar"; };
 

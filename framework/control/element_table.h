@@ -33,16 +33,16 @@ enum class ValueType {
 struct AttributeRow {
   std::string name;
   ValueType type = ValueType::text;
-  std::string unit;                                                ///< "N", "m", "N m/rad", "1"; "" for what has none
-  std::optional<std::string> default_text;                         ///< as it would be written
+  std::string unit = {};                                           ///< "N", "m", "N m/rad", "1"; "" for what has none
+  std::optional<std::string> default_text = {};                         ///< as it would be written
   bool required = false;
-  std::string description;
+  std::string description = {};
   double lower = -std::numeric_limits<double>::infinity();         ///< each number ≥ lower (> when lower_open)
   double upper = std::numeric_limits<double>::infinity();
   bool lower_open = false;
   int count = 0;                                                   ///< numbers in `reals`, or in a group of `points`; 0 = any
-  std::vector<std::string> choices;                                ///< for `choice`; for joints/links: extra words, e.g. "free"
-  std::string port_type;                                           ///< for `port`
+  std::vector<std::string> choices = {};                                ///< for `choice`; for joints/links: extra words, e.g. "free"
+  std::string port_type = {};                                           ///< for `port`
 };
 
 struct ChildRow {
@@ -56,7 +56,7 @@ struct PortRow {
   std::string name;
   std::string type;                                                ///< "contact-set", "point-set", "feature", …
   std::string unit;
-  std::string description;
+  std::string description = {};
 };
 
 enum class ElementKind { structure, shape, task, signal, back_end };
@@ -64,11 +64,11 @@ enum class ElementKind { structure, shape, task, signal, back_end };
 struct ElementRow {
   std::string name;
   ElementKind kind = ElementKind::structure;
-  std::string description;
-  std::string source;                                              ///< equation or paper, "" when it has none
-  std::vector<AttributeRow> attributes;
-  std::vector<ChildRow> children;
-  std::vector<PortRow> ports;                                      ///< of signals
+  std::string description = {};
+  std::string source = {};                                              ///< equation or paper, "" when it has none
+  std::vector<AttributeRow> attributes = {};
+  std::vector<ChildRow> children = {};
+  std::vector<PortRow> ports = {};                                      ///< of signals
 
   const AttributeRow* attribute(std::string_view name) const;
 };

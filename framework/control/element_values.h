@@ -55,6 +55,9 @@ class ElementValues {
 /// On failure returns what was wrong and what was expected, as one sentence, in `error`.
 std::optional<Value> parseValue(const AttributeRow& row, const std::string& text, std::string& error);
 
+/// The shortest text that reads back to the same double, whatever the locale.
+std::string formatNumber(double number);
+
 /// Values of `row` from plain pairs, for tests and for `tactus solve`; throws std::invalid_argument with the sentence.
 ElementValues makeValues(const ElementRow& row, const std::map<std::string, std::string>& given = {});
 

@@ -20,20 +20,22 @@ class ModelError : public std::runtime_error {
 };
 
 enum class MassPolicy {
-  required,                                                        ///< every moving body needs mass: dynamics will be asked for
+  required,                                                        ///< dynamics will be asked for
   kinematics_only                                                  ///< poses and Jacobians alone
 };
 
 /// A fixed-base tree of rigid bodies (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 4).  One body per
 /// moving joint, numbered depth-first as description::Robot says; links on fixed joints are merged into the body
 /// that carries them and remain as frames.  Body i is moved by joint i, i.e. by q[i]; -1 is the base.
+///
+/// A body frame is the frame of its joint, turned so that the joint axis is its z axis: then every joint
+/// rotates about, or slides along, z.  Links keep their own axes: see Frame::pose.
 class Model {
  public:
   struct Body {
     int parent = -1;                                               ///< body index, -1 is the base
     description::JointType type = description::JointType::revolute;
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit, joint frame
-    Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();      ///< joint frame in the parent body's frame at q = 0
+    Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();      ///< in the parent body's frame at q = 0
     RigidBodyInertia inertia;                                      ///< merged links and rotor, body frame
   };
   /// A link of the description, wherever it is carried.
@@ -43,6 +45,7 @@ class Model {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();        ///< link frame in the body frame
   };
 
+  /// Throws ModelError, also for what no policy can use: loops, several roots, numbers that are not finite, ...
   explicit Model(const description::Robot& robot, MassPolicy policy = MassPolicy::required);
 
   int dof() const { return static_cast<int>(bodies_.size()); }
@@ -53,6 +56,9 @@ class Model {
   const std::vector<std::string>& jointNames() const { return joint_names_; }
   int jointIndex(std::string_view joint) const;                    ///< index into q, or -1
   bool supports(int joint, int frame) const;                       ///< does joint (index into q) move the frame?
+  int parent(int body) const { return parents_[body]; }            ///< body index, -1 is the base
+  /// One past the last body of the subtree of `body`; depth-first numbers make it [body, subtreeEnd(body)).
+  int subtreeEnd(int body) const { return subtree_ends_[body]; }
 
   const Eigen::VectorXd& lower() const { return lower_; }          ///< rad or m, dof
   const Eigen::VectorXd& upper() const { return upper_; }
@@ -63,6 +69,7 @@ class Model {
   std::vector<Body> bodies_;
   std::vector<Frame> frames_;
   std::vector<std::string> joint_names_;
+  std::vector<int> parents_, subtree_ends_;
   Eigen::VectorXd lower_, upper_, effort_, velocity_;
 };
 

@@ -1,0 +1,84 @@
+#include <iostream>
+
+#include "apps/tactus/errors.h"
+#include "apps/tactus/stack_arguments.h"
+#include "dsl/compile.h"
+#include "framework/runtime/file_error.h"
+
+namespace tactus::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct CheckArguments {
+  std::vector<std::string> files;
+  std::vector<std::string> set;
+  std::string back_end;
+  std::vector<std::string> plugins;
+};
+
+/// Findings of one file, warnings first, and the exit code that they call for.
+struct Findings {
+  std::vector<dsl::Diagnostic> warnings;
+  std::vector<dsl::Diagnostic> errors;
+  int exit_code = exit_done;
+};
+
+Findings checkFile(Program& program, const StackOptions& options) {
+  Findings findings;
+  try {
+    const dsl::Stack stack = program.read(options, &findings.warnings);
+    dsl::compile(stack, program.registry());
+  } catch (const dsl::InvalidStack& invalid) {
+    findings.errors = invalid.diagnostics;
+    findings.exit_code = exitCode(findings.errors);
+  } catch (const runtime::FileError& error) {
+    dsl::Diagnostic diagnostic;
+    diagnostic.code = "E001";
+    diagnostic.message = error.what();
+    diagnostic.place = {options.file, 1, 1};
+    findings.errors.push_back(diagnostic);
+    findings.exit_code = exit_files;
+  }
+  return findings;
+}
+
+int check(const CheckArguments& arguments, bool json) {
+  Program program(arguments.plugins);
+  ordered_json errors = ordered_json::array(), warnings = ordered_json::array();
+  int code = exit_done;
+  for (const std::string& file : arguments.files) {
+    const Findings findings = checkFile(program, {file, arguments.set, arguments.back_end, {}, {}});
+    for (const dsl::Diagnostic& warning : findings.warnings) warnings.push_back(toJson(warning));
+    for (const dsl::Diagnostic& error : findings.errors) errors.push_back(toJson(error));
+    if (code == exit_done) code = findings.exit_code;
+    if (json) continue;
+    for (const auto* list : {&findings.warnings, &findings.errors}) {
+      for (const dsl::Diagnostic& diagnostic : *list) std::cerr << dsl::render(diagnostic) << "\n";
+    }
+    if (findings.errors.empty()) std::cout << file << ": ok\n";
+  }
+  if (json) std::cout << ordered_json{{"errors", errors}, {"warnings", warnings}}.dump(2) << "\n";
+  return code;
+}
+
+}  // namespace
+
+void addCheck(CLI::App& program, Context& context) {
+  CLI::App* command = program.add_subcommand("check", "Read and compile stacks without running them; tell every error");
+  const auto arguments = std::make_shared<CheckArguments>();
+  command->add_option("STACK", arguments->files, "XML files of stacks")->required()->type_name("");
+  command->add_option("--set", arguments->set, "Give a <parameter> of the stacks another value")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--backend", arguments->back_end, "Check for this back end instead of the stack's")
+      ->type_name("BACKEND");
+  declarePlugins(*command, arguments->plugins);
+  command->add_flag("--json", context.json, "{errors: [{file, line, column, code, message, suggestion?}], warnings}");
+  command->footer(R"(Examples:
+  tactus check examples/explore_table/stack.xml
+  tactus check --json a.xml b.xml)");
+  command->callback([=, &context] { context.action = [=, &context] { return check(*arguments, context.json); }; });
+}
+
+}  // namespace tactus::app

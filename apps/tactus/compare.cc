@@ -1,0 +1,222 @@
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "apps/tactus/interrupt.h"
+#include "apps/tactus/progress.h"
+#include "apps/tactus/same_states.h"
+#include "apps/tactus/session.h"
+#include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/text.h"
+#include "dsl/compile.h"
+#include "framework/runtime/percentile.h"
+
+namespace tactus::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct CompareArguments : StackArguments {
+  std::string back_ends = "null-space,qp/ipopt,qp/nlopt";
+  long every = 50;
+};
+
+/// Mean of |error| of each task over a run.
+class TaskErrors final : public runtime::Observer {
+ public:
+  explicit TaskErrors(const control::Controller& controller) {
+    for (const control::Level& level : controller.levels()) {
+      for (const control::NamedTask& named : level.tasks) tasks_.push_back({named.name, named.task.get(), 0});
+    }
+  }
+  void observe(const runtime::ObservedTick&) override {
+    ++ticks_;
+    for (Sum& sum : tasks_) sum.error += std::abs(sum.task->error());
+  }
+  ordered_json means() const {
+    ordered_json json = ordered_json::object();
+    for (const Sum& sum : tasks_) json[sum.name] = sum.error / static_cast<double>(std::max(1L, ticks_));
+    return json;
+  }
+
+ private:
+  struct Sum {
+    std::string name;
+    const control::Task* task;
+    double error;
+  };
+  std::vector<Sum> tasks_;
+  long ticks_ = 0;
+};
+
+ordered_json kktToJson(bool has_kkt, const control::KktResidual& kkt) {
+  if (!has_kkt) return nullptr;
+  return {{"stationarity", kkt.stationarity}, {"primal", kkt.primal}, {"complementarity", kkt.complementarity}};
+}
+
+ordered_json timesToJson(const std::vector<double>& times) {
+  return {{"median", runtime::percentile(times, 0.5)}, {"p99", runtime::percentile(times, 0.99)}};
+}
+
+/// The whole run with one back end.
+ordered_json closedLoop(Session& session, const std::string& label, const std::vector<runtime::Observer*>& more,
+                        const std::atomic<bool>& stop) {
+  TaskErrors errors(session.controller());
+  Progress progress(session.stack().run.duration, label + ": ");
+  std::vector<runtime::Observer*> observers{&errors, &progress};
+  observers.insert(observers.end(), more.begin(), more.end());
+  const runtime::LoopResult result = session.run(observers, stop);
+
+  const runtime::RunStatistics& statistics = session.statistics();
+  ordered_json metrics = ordered_json::object();
+  for (const control::Metric& metric : session.metrics()) metrics[metric.name] = metric.value;
+  return {{"status", result.ending == runtime::Ending::done ? "done" : result.message},
+          {"duration_s", result.simulated},
+          {"realtime_factor", result.realtimeFactor()},
+          {"tick_us", timesToJson(statistics.tickTimes())},
+          {"fallbacks", statistics.fallbacks},
+          {"infeasible", statistics.infeasible},
+          {"limited", statistics.limited},
+          {"lost_rank", statistics.lost_rank},
+          {"kkt_max", kktToJson(statistics.has_kkt, statistics.kkt_max)},
+          {"metrics", metrics},
+          {"task_errors", errors.means()}};
+}
+
+ordered_json sameStates(const std::vector<control::TickProblem>& problems, const Answers& reference,
+                        const Answers& answers) {
+  const TorqueDifference difference = compareTorques(problems, reference, answers);
+  return {{"torque_difference", {{"mean", difference.mean}, {"max", difference.max}}},
+          {"torque_difference_relative", {{"mean", difference.relative_mean}, {"max", difference.relative_max}}},
+          {"compared", difference.compared},
+          {"unsolved", answers.unsolved},
+          {"violation_max", answers.violation_max},
+          {"kkt_max", kktToJson(answers.has_kkt, answers.kkt_max)},
+          {"solve_us", timesToJson(answers.solve_us)}};
+}
+
+/// One column for each back end.
+class Table {
+ public:
+  explicit Table(const ordered_json& comparison) : back_ends_(comparison["backends"]) {
+    std::vector<std::string> head{""};
+    for (const ordered_json& back_end : back_ends_) head.push_back(back_end["backend"].get<std::string>());
+    rows_.push_back(head);
+  }
+  void heading(const std::string& text) { rows_.push_back({text}); }
+  void row(const std::string& label, const std::string& pointer) {
+    std::vector<std::string> cells{"  " + label};
+    for (const ordered_json& back_end : back_ends_) {
+      const ordered_json::json_pointer at(pointer);
+      const bool known = back_end.contains(at) && back_end[at].is_number();
+      cells.push_back(known ? rounded(back_end[at].get<double>()) : "–");
+    }
+    rows_.push_back(cells);
+  }
+  void rowsOf(const std::string& pointer) {
+    const ordered_json& first = back_ends_.front()[ordered_json::json_pointer(pointer)];
+    for (const auto& [name, value] : first.items()) row(name, pointer + "/" + name);
+  }
+  std::string text() const { return textTable(rows_); }
+
+ private:
+  const ordered_json& back_ends_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+std::string comparisonTable(const ordered_json& comparison) {
+  Table table(comparison);
+  table.heading("same " + std::to_string(comparison["sampled_ticks"].get<size_t>()) + " tick problems of " +
+                comparison["reference"].get<std::string>());
+  table.row("torque difference, mean (M⁻¹ norm)", "/same_states/torque_difference/mean");
+  table.row("torque difference, max", "/same_states/torque_difference/max");
+  table.row("relative, mean", "/same_states/torque_difference_relative/mean");
+  table.row("relative, max", "/same_states/torque_difference_relative/max");
+  table.row("constraint violation, max (relative)", "/same_states/violation_max");
+  table.row("KKT stationarity, max", "/same_states/kkt_max/stationarity");
+  table.row("not solved", "/same_states/unsolved");
+  table.row("solve, median (µs)", "/same_states/solve_us/median");
+  table.row("solve, p99 (µs)", "/same_states/solve_us/p99");
+  table.heading("closed loop");
+  table.row("duration (s)", "/closed_loop/duration_s");
+  table.row("× real time", "/closed_loop/realtime_factor");
+  table.row("tick, median (µs)", "/closed_loop/tick_us/median");
+  table.row("tick, p99 (µs)", "/closed_loop/tick_us/p99");
+  for (const char* count : {"fallbacks", "infeasible", "limited", "lost_rank"}) {
+    table.row(count, std::string("/closed_loop/") + count);
+  }
+  table.row("KKT stationarity, max", "/closed_loop/kkt_max/stationarity");
+  table.row("KKT primal, max", "/closed_loop/kkt_max/primal");
+  table.rowsOf("/closed_loop/metrics");
+  table.heading("mean task error in closed loop");
+  table.rowsOf("/closed_loop/task_errors");
+  return table.text();
+}
+
+int compare(const CompareArguments& arguments, bool json) {
+  Program program(arguments.plugins);
+  const std::vector<std::string> labels = split(arguments.back_ends, ',');
+  const auto readFor = [&](const std::string& label) {
+    StackOptions options = arguments.stack;
+    options.back_end = label;
+    return readAloud(program, options);
+  };
+  for (const std::string& label : labels) program.backEndChoice(label);  // Refuse before the first long run.
+
+  const Interrupt interrupt;
+  ProblemSampler sampler(arguments.every);
+  ordered_json back_ends = ordered_json::array();
+  std::string name;
+  std::uint64_t seed = 0;
+  int code = exit_done;
+  for (const std::string& label : labels) {
+    Session session(readFor(label), program.registry());
+    name = session.stack().name;
+    seed = session.stack().run.seed;
+    std::vector<runtime::Observer*> sampling;
+    if (back_ends.empty()) sampling.push_back(&sampler);
+    back_ends.push_back({{"backend", label}, {"closed_loop", closedLoop(session, label, sampling, interrupt.stop())}});
+    if (interrupt.stop()) return exit_interrupted;
+    if (back_ends.back()["closed_loop"]["status"] != "done") code = exit_numerical;
+  }
+  Answers reference;
+  for (size_t i = 0; i < labels.size(); ++i) {
+    // A fresh controller, so that no back end starts warm from its own run.
+    const auto controller = dsl::compile(readFor(labels[i]), program.registry());
+    const Answers answers = solveAll(controller->backEnd(), sampler.problems());
+    if (i == 0) reference = answers;
+    back_ends[i]["same_states"] = sameStates(sampler.problems(), reference, answers);
+  }
+  const ordered_json comparison{{"stack", name},
+                                {"seed", seed},
+                                {"reference", labels.front()},
+                                {"sampled_ticks", sampler.problems().size()},
+                                {"backends", back_ends}};
+  std::cout << (json ? comparison.dump(2) + "\n" : comparisonTable(comparison));
+  return code;
+}
+
+}  // namespace
+
+void addCompare(CLI::App& program, Context& context) {
+  CLI::App* command = program.add_subcommand("compare", "Several back ends on one stack: same states, and closed loop");
+  const auto arguments = std::make_shared<CompareArguments>();
+  command->add_option("STACK", arguments->stack.file, "The stack's XML file")->required()->type_name("");
+  command->add_option("--backends", arguments->back_ends, "Back ends; the first is the reference")
+      ->type_name("A,B,…")
+      ->capture_default_str();
+  command->add_option("--every", arguments->every, "Solve every K-th tick problem of the first run with all back ends")
+      ->type_name("K")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  arguments->declare(*command);
+  command->add_flag("--json", context.json, "{stack, seed, reference, sampled_ticks, backends: [{backend, closed_loop, same_states}]}");
+  command->footer(R"(A back end may name its variants: qp/nlopt, null-space/augmented, null-space/successive/one-pass.
+
+Examples:
+  tactus compare examples/explore_table/stack.xml --backends null-space,qp/ipopt,qp/nlopt --duration 5
+  tactus compare examples/explore_table/stack.xml --backends null-space/successive,null-space/augmented --json)");
+  command->callback([=, &context] { context.action = [=, &context] { return compare(*arguments, context.json); }; });
+}
+
+}  // namespace tactus::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "apps/tactus/command.h"
+#include "dsl/diagnostic.h"
+
+namespace tactus::app {
+
+/// Runs the action and turns what it throws into talk on stderr (with --json also `{errors: […]}` on stdout) and
+/// the exit code.
+int reportErrors(const Context& context);
+
+/// {file, line, column, code, message, suggestion?}
+nlohmann::ordered_json toJson(const dsl::Diagnostic& diagnostic);
+
+/// The exit code of a list of findings: the first error's; 0 without errors.
+int exitCode(const std::vector<dsl::Diagnostic>& diagnostics);
+
+}  // namespace tactus::app

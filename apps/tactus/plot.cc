@@ -1,0 +1,281 @@
+#include "apps/tactus/plot.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace tactus::app {
+namespace {
+
+constexpr double margin_left = 62, margin_right = 18, margin_top = 34, margin_bottom = 44;
+constexpr int colours = 32;
+
+/// A number with few digits, enough for a pixel.
+std::string px(double value) {
+  char text[32];
+  const double tenth = std::round(value * 10) / 10;
+  return {text, std::to_chars(text, text + sizeof text, tenth == 0 ? 0 : tenth).ptr};
+}
+
+std::string fixed(double value, int decimals) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::fixed, decimals).ptr};
+}
+
+struct Range {
+  double lower = INFINITY, upper = -INFINITY;
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    lower = std::min(lower, value);
+    upper = std::max(upper, value);
+  }
+  double length() const { return upper - lower; }
+  /// Something to draw even when there is no value, or only one.
+  void makeDrawable() {
+    if (!(lower <= upper)) *this = {0, 1};
+    if (length() <= 0) *this = {lower - 0.5, upper + 0.5};
+  }
+  void widen(double fraction) { *this = {lower - fraction * length(), upper + fraction * length()}; }
+};
+
+/// 1, 2 or 5 times a power of ten, about `count` of which fill the range.
+double niceStep(const Range& range, int count) {
+  const double raw = range.length() / count;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= raw * 0.999) return factor * power;
+  }
+  return 10 * power;
+}
+
+/// The frame of a plot: from values to pixels, axes with ticks and labels.
+class Frame {
+ public:
+  Frame(const Box& box, Range x, Range y) : box_(box), x_(x), y_(y) {
+    area_ = {box.x + margin_left, box.y + margin_top, box.width - margin_left - margin_right,
+             box.height - margin_top - margin_bottom};
+  }
+  void makeEqual() {
+    const double scale = std::min(area_.width / x_.length(), area_.height / y_.length());
+    const auto stretch = [](Range& range, double length) {
+      const double middle = (range.lower + range.upper) / 2;
+      range = {middle - length / 2, middle + length / 2};
+    };
+    stretch(x_, area_.width / scale);
+    stretch(y_, area_.height / scale);
+  }
+  double px_x(double value) const { return area_.x + (value - x_.lower) / x_.length() * area_.width; }
+  double px_y(double value) const { return area_.y + area_.height - (value - y_.lower) / y_.length() * area_.height; }
+  const Box& area() const { return area_; }
+
+  std::string axes(const std::string& title, const std::string& x_label, const std::string& y_label) const {
+    std::string svg = "<rect x='" + px(area_.x) + "' y='" + px(area_.y) + "' width='" + px(area_.width) + "' height='" +
+                      px(area_.height) + "' fill='#fbfbfa' stroke='#c9c9c4'/>\n";
+    const auto ticks = [&](const Range& range, int count, auto&& draw) {
+      const double step = niceStep(range, count);
+      const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+      for (double k = std::ceil(range.lower / step - 1e-9); k * step <= range.upper + 1e-9 * step; ++k) {
+        draw(k * step, fixed(k * step, decimals));
+      }
+    };
+    ticks(x_, static_cast<int>(std::max(2.0, area_.width / 80)), [&](double value, const std::string& text) {
+      const std::string at = px(px_x(value));
+      svg += "<path d='M" + at + " " + px(area_.y) + "v" + px(area_.height) + "' stroke='#e7e7e2' fill='none'/><text x='" +
+             at + "' y='" + px(area_.y + area_.height + 16) + "' text-anchor='middle' fill='#555'>" + text + "</text>\n";
+    });
+    ticks(y_, static_cast<int>(std::max(2.0, area_.height / 40)), [&](double value, const std::string& text) {
+      const double at = px_y(value);
+      svg += "<path d='M" + px(area_.x) + " " + px(at) + "h" + px(area_.width) +
+             "' stroke='#e7e7e2' fill='none'/><text x='" + px(area_.x - 7) + "' y='" + px(at + 4) +
+             "' text-anchor='end' fill='#555'>" + text + "</text>\n";
+    });
+    const double middle = area_.y + area_.height / 2;
+    svg += "<text x='" + px(area_.x) + "' y='" + px(box_.y + 20) + "' font-size='14' font-weight='600' fill='#222'>" +
+           escaped(title) + "</text>\n<text x='" + px(area_.x + area_.width / 2) + "' y='" + px(box_.y + box_.height - 8) +
+           "' text-anchor='middle' fill='#333'>" + escaped(x_label) + "</text>\n<text transform='translate(" +
+           px(box_.x + 16) + " " + px(middle) + ") rotate(-90)' text-anchor='middle' fill='#333'>" + escaped(y_label) +
+           "</text>\n";
+    return svg;
+  }
+
+ private:
+  Box box_, area_;
+  Range x_, y_;
+};
+
+/// At most two points a pixel: the least and the largest value of each bucket, so that no peak is lost.
+Line thinned(const Line& line, size_t buckets) {
+  if (line.x.size() <= 2 * buckets) return line;
+  Line thin{line.label, line.colour, {}, {}};
+  for (size_t b = 0; b < buckets; ++b) {
+    const size_t from = b * line.x.size() / buckets, to = (b + 1) * line.x.size() / buckets;
+    const auto [least, largest] = std::minmax_element(line.y.begin() + static_cast<std::ptrdiff_t>(from),
+                                                      line.y.begin() + static_cast<std::ptrdiff_t>(to));
+    const auto ends = std::minmax(least - line.y.begin(), largest - line.y.begin());
+    for (const auto i : {ends.first, ends.second}) {
+      thin.x.push_back(line.x[static_cast<size_t>(i)]);
+      thin.y.push_back(line.y[static_cast<size_t>(i)]);
+    }
+  }
+  return thin;
+}
+
+std::string path(const Line& line, const Frame& frame) {
+  std::string d;
+  bool pen_down = false;
+  for (size_t i = 0; i < line.x.size(); ++i) {
+    if (!std::isfinite(line.y[i])) {
+      pen_down = false;
+      continue;
+    }
+    d += (pen_down ? "L" : "M") + px(frame.px_x(line.x[i])) + " " + px(frame.px_y(line.y[i]));
+    pen_down = true;
+  }
+  return "<path d='" + d + "' fill='none' stroke='" + line.colour + "' stroke-width='1.4' stroke-linejoin='round'/>\n";
+}
+
+/// Viridis, by linear interpolation between nine of its colours.
+std::string viridis(double fraction) {
+  constexpr std::array<std::array<int, 3>, 9> stops{{{68, 1, 84}, {71, 44, 122}, {59, 81, 139}, {44, 113, 142}, {33, 144, 141},
+                                                     {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}}};
+  const double at = std::clamp(fraction, 0.0, 1.0) * (stops.size() - 1);
+  const size_t i = std::min(static_cast<size_t>(at), stops.size() - 2);
+  std::string colour = "#";
+  for (size_t c = 0; c < 3; ++c) {
+    const int value = static_cast<int>(std::lround(stops[i][c] + (at - static_cast<double>(i)) * (stops[i + 1][c] - stops[i][c])));
+    colour += "0123456789abcdef"[value / 16];
+    colour += "0123456789abcdef"[value % 16];
+  }
+  return colour;
+}
+
+/// A label at (x, y) that stays readable on any ground.
+std::string haloText(double x, double y, const std::string& text) {
+  return "<text x='" + px(x) + "' y='" + px(y) +
+         "' fill='#222' stroke='#fff' stroke-width='3' paint-order='stroke'>" + escaped(text) + "</text>\n";
+}
+
+std::string drawMarker(const Marker& marker, const Frame& frame) {
+  const double x = frame.px_x(marker.x), y = frame.px_y(marker.y);
+  const std::string shape =
+      marker.ring ? "<circle cx='" + px(x) + "' cy='" + px(y) + "' r='9' fill='none'"
+                  : "<path d='M" + px(x - 6) + " " + px(y - 6) + "l12 12m0 -12l-12 12' fill='none'";
+  return shape + " stroke='#d62728' stroke-width='2.2'/>\n" + haloText(x + 13, y + (marker.ring ? -7 : 14), marker.label);
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+      case '&': safe += "&amp;"; break;
+      case '<': safe += "&lt;"; break;
+      case '>': safe += "&gt;"; break;
+      case '"': safe += "&quot;"; break;
+      case '\'': safe += "&#39;"; break;
+      default: safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string draw(const LinePlot& plot, const Box& box) {
+  Range x, y;
+  for (const Line& line : plot.lines) {
+    for (const double value : line.x) x.add(value);
+    for (const double value : line.y) y.add(value);
+  }
+  if (plot.wanted) y.add(*plot.wanted);
+  if (plot.from_zero) y.add(0);
+  x.makeDrawable();
+  y.makeDrawable();
+  y.upper += 0.06 * y.length();
+  if (y.lower < 0) y.lower -= 0.06 * y.length();
+  const Frame frame(box, x, y);
+
+  std::string svg = frame.axes(plot.title, plot.x_label, plot.y_label);
+  for (const Line& line : plot.lines) svg += path(thinned(line, static_cast<size_t>(frame.area().width)), frame);
+  // Keys from the right, on the line of the title.
+  double key = box.x + box.width - margin_right;
+  const auto addKey = [&](const std::string& label, const std::string& stroke) {
+    key -= 7.0 * static_cast<double>(label.size()) + 34;
+    svg += "<path d='M" + px(key) + " " + px(box.y + 16) + "h20' fill='none' " + stroke + "/><text x='" + px(key + 25) +
+           "' y='" + px(box.y + 20) + "' fill='#333'>" + escaped(label) + "</text>\n";
+  };
+  if (plot.wanted) {
+    const std::string stroke = "stroke='#444' stroke-width='1.4' stroke-dasharray='6 4'";
+    svg += "<path d='M" + px(frame.area().x) + " " + px(frame.px_y(*plot.wanted)) + "h" + px(frame.area().width) +
+           "' fill='none' " + stroke + "/>\n";
+    addKey(plot.wanted_label, stroke);
+  }
+  for (auto line = plot.lines.rbegin(); line != plot.lines.rend(); ++line) {
+    if (!line->label.empty()) addKey(line->label, "stroke='" + line->colour + "' stroke-width='2.5'");
+  }
+  return svg;
+}
+
+std::string draw(const PointPlot& plot, const Box& box) {
+  Range x, y;
+  for (const double value : plot.x) x.add(value);
+  for (const double value : plot.y) y.add(value);
+  for (const Marker& marker : plot.markers) {
+    x.add(marker.x);
+    y.add(marker.y);
+  }
+  x.makeDrawable();
+  y.makeDrawable();
+  x.widen(0.05);
+  y.widen(0.08);
+  Frame frame(box, x, y);
+  if (plot.equal_axes) frame.makeEqual();
+
+  // One path for each colour; points that would cover the same pixel are drawn once.
+  std::array<std::string, colours> paths;
+  std::set<std::pair<long, long>> covered[colours];
+  for (size_t i = 0; i < plot.x.size(); ++i) {
+    const double fraction = plot.value_max > 0 ? plot.value[i] / plot.value_max : 0;
+    const auto colour = static_cast<size_t>(std::clamp(fraction, 0.0, 1.0) * (colours - 1));
+    const double at_x = frame.px_x(plot.x[i]), at_y = frame.px_y(plot.y[i]);
+    if (!covered[colour].insert({std::lround(at_x), std::lround(at_y)}).second) continue;
+    paths[colour] += "M" + px(at_x) + " " + px(at_y) + "h0";
+  }
+  std::string svg = frame.axes(plot.title, plot.x_label, plot.y_label);
+  for (size_t colour = 0; colour < paths.size(); ++colour) {
+    if (paths[colour].empty()) continue;
+    svg += "<path d='" + paths[colour] + "' fill='none' stroke='" +
+           viridis(static_cast<double>(colour) / (colours - 1)) + "' stroke-width='3.2' stroke-linecap='round'/>\n";
+  }
+  for (const Marker& marker : plot.markers) svg += drawMarker(marker, frame);
+  return svg;
+}
+
+std::string drawColourBar(const std::string& label, double value_max, const Box& box) {
+  std::string svg;
+  const double step = box.width / colours;
+  for (int i = 0; i < colours; ++i) {
+    svg += "<rect x='" + px(box.x + i * step) + "' y='" + px(box.y) + "' width='" + px(step + 0.5) + "' height='" +
+           px(box.height) + "' fill='" + viridis(static_cast<double>(i) / (colours - 1)) + "'/>";
+  }
+  const auto text = [&](double x, const std::string& anchor, const std::string& content) {
+    svg += "<text x='" + px(x) + "' y='" + px(box.y + box.height + 15) + "' text-anchor='" + anchor + "' fill='#333'>" +
+           escaped(content) + "</text>\n";
+  };
+  text(box.x, "start", "0");
+  text(box.x + box.width / 2, "middle", label);
+  text(box.x + box.width, "end", fixed(value_max, value_max < 10 ? 1 : 0));
+  return svg;
+}
+
+std::string svgDocument(double width, double height, const std::string& content) {
+  return "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + px(width) + " " + px(height) + "' width='" + px(width) +
+         "' height='" + px(height) +
+         "' font-family=\"system-ui, 'DejaVu Sans', 'Liberation Sans', sans-serif\" font-size='12'>\n"
+         "<rect width='100%' height='100%' fill='#fff'/>\n" +
+         content + "</svg>\n";
+}
+
+}  // namespace tactus::app

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "framework/runtime/observer.h"
+
+namespace tactus::app {
+
+/// One line on stderr, at most ten times a second, and only when stderr is a terminal: simulated time and the
+/// real-time factor.
+class Progress final : public runtime::Observer {
+ public:
+  explicit Progress(double duration, std::string label = "");
+  ~Progress() override;
+
+  void observe(const runtime::ObservedTick& tick) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool terminal_;
+  double duration_;                                                ///< s
+  std::string label_;
+  Clock::time_point start_, shown_;
+};
+
+}  // namespace tactus::app

@@ -1,0 +1,216 @@
+#include "apps/tactus/report.h"
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "apps/tactus/command.h"
+#include "apps/tactus/plot.h"
+#include "apps/tactus/run_folder.h"
+#include "apps/tactus/targets.h"
+#include "apps/tactus/text.h"
+#include "framework/runtime/csv_table.h"
+#include "framework/runtime/file_error.h"
+#include "framework/runtime/percentile.h"
+
+namespace tactus::app {
+namespace {
+
+using nlohmann::ordered_json;
+using runtime::CsvTable;
+
+constexpr const char* blue = "#1f6fb4";
+constexpr const char* orange = "#e07b1a";
+constexpr const char* grey = "#9a9a94";
+
+/// What the report is made of.
+struct RunData {
+  ordered_json run;
+  CsvTable log;
+  CsvTable touched;
+};
+
+RunData readRunFolder(const std::string& folder) {
+  ordered_json run = ordered_json::parse(runtime::readFile(folder + "/run.json"), nullptr, false);
+  if (!run.is_object() || run.value("format", "") != run_format) {
+    throw runtime::FileError(folder + "/run.json", std::string("is not of the format ") + run_format);
+  }
+  return {std::move(run), CsvTable::read(folder + "/log.csv"), CsvTable::read(folder + "/touched_points.csv")};
+}
+
+Line logLine(const CsvTable& log, const std::string& column, const std::string& label, const std::string& colour) {
+  return {label, colour, log.numbers(log.column("time")), log.numbers(log.column(column))};
+}
+
+std::string drawContactNumber(const RunData& data, const Box& box) {
+  LinePlot plot{"Links in contact", "time (s)", "number", {}, {}, "", true};
+  plot.lines.push_back(logLine(data.log, "contact/links", "", blue));
+  return draw(plot, box);
+}
+
+std::string drawForces(const RunData& data, const Box& box) {
+  LinePlot plot{"Contact forces", "time (s)", "force (N)", {}, {}, "wanted", true};
+  plot.lines.push_back(logLine(data.log, "contact/undesired_max_N", "undesired, largest", grey));
+  plot.lines.push_back(logLine(data.log, "contact/max_N", "desired, largest", orange));
+  plot.lines.push_back(logLine(data.log, "contact/mean_N", "desired, mean", blue));
+  if (data.run.contains("wanted_force_N")) plot.wanted = data.run["wanted_force_N"].get<double>();
+  return draw(plot, box);
+}
+
+std::string drawContacts(const RunData& data) {
+  return svgDocument(1100, 560, drawContactNumber(data, {0, 0, 1100, 240}) + drawForces(data, {0, 240, 1100, 320}));
+}
+
+/// Touched points with their height (mm) above the lowest plane: the second percentile of z, so that a few points
+/// that press deeper do not move it.
+struct Cloud {
+  std::vector<double> x, y, height_mm;
+  double plane = 0;                                                ///< m
+  double height_max = 1;                                           ///< mm, of the colour scale
+};
+
+Cloud touchedCloud(const CsvTable& touched) {
+  Cloud cloud;
+  cloud.x = touched.numbers(touched.column("x"));
+  cloud.y = touched.numbers(touched.column("y"));
+  const std::vector<double> z = touched.numbers(touched.column("z"));
+  if (z.empty()) return cloud;
+  cloud.plane = runtime::percentile(z, 0.02);
+  for (const double height : z) cloud.height_mm.push_back((height - cloud.plane) * 1000);
+  cloud.height_max = std::max(1.0, runtime::percentile(cloud.height_mm, 0.999));
+  return cloud;
+}
+
+/// Where features were found and where they really are, seen along one axis of the world.
+std::vector<Marker> featureMarkers(const ordered_json& run, int horizontal, int vertical, double plane) {
+  std::vector<Marker> markers;
+  const auto add = [&](const ordered_json& point, bool ring, const std::string& label) {
+    const double v = point[static_cast<size_t>(vertical)].get<double>();
+    markers.push_back({point[static_cast<size_t>(horizontal)].get<double>(), vertical == 2 ? (v - plane) * 1000 : v, ring,
+                       label});
+  };
+  for (const ordered_json& feature : run["features"]) {
+    const std::string name = feature["name"].get<std::string>();
+    if (feature.contains("truth_W")) add(feature["truth_W"], true, name + ", true top");
+    if (feature.contains("position_W")) add(feature["position_W"], false, name + ", found");
+  }
+  return markers;
+}
+
+std::string drawTouchedPoints(const RunData& data) {
+  const Cloud cloud = touchedCloud(data.touched);
+  const auto view = [&](const std::string& title, const std::string& x_label, const std::string& y_label,
+                        const std::vector<double>& x, const std::vector<double>& y, int horizontal, int vertical) {
+    return PointPlot{title,           x_label,          y_label, x, y, cloud.height_mm, cloud.height_max, vertical != 2,
+                     featureMarkers(data.run, horizontal, vertical, cloud.plane)};
+  };
+  const std::string above = "height (mm)";
+  return svgDocument(
+      1100, 560,
+      draw(view("Touched points from above", "x (m)", "y (m)", cloud.x, cloud.y, 0, 1), {0, 0, 560, 510}) +
+          drawColourBar("height above the lowest plane (mm)", cloud.height_max, {62, 520, 480, 12}) +
+          draw(view("From the side: x and height", "x (m)", above, cloud.x, cloud.height_mm, 0, 2), {560, 0, 540, 280}) +
+          draw(view("From the side: y and height", "y (m)", above, cloud.y, cloud.height_mm, 1, 2), {560, 280, 540, 280}));
+}
+
+/// One small plot for the error of each task.
+std::string drawTaskErrors(const RunData& data) {
+  constexpr double width = 550, height = 210;
+  std::string svg;
+  int count = 0;
+  for (const std::string& column : data.log.columns()) {
+    if (!column.starts_with("task/") || !column.ends_with("/error")) continue;
+    const std::string task = column.substr(5, column.size() - 5 - 6);
+    LinePlot plot{"Error of task " + task, "time (s)", "error", {logLine(data.log, column, "", blue)}, {}, "", true};
+    svg += draw(plot, {width * (count % 2), height * (count / 2), width, height});
+    ++count;
+  }
+  return svgDocument(2 * width, height * ((count + 1) / 2), svg);
+}
+
+std::string number(const ordered_json& value) { return value.is_null() ? "–" : rounded(value.get<double>()); }
+
+std::string metricsTable(const ordered_json& run) {
+  std::string html = "<table><tr><th>metric</th><th>value</th><th>wanted</th><th></th></tr>\n";
+  for (const auto& [name, value] : run["metrics"].items()) {
+    html += "<tr><td>" + escaped(name) + "</td><td class='number'>" + number(value) + "</td>";
+    if (run["wanted"].contains(name)) {
+      const Target target = targetFromJson(name, run["wanted"][name]);
+      const bool met = !value.is_null() && target.metBy(value.get<double>());
+      html += "<td class='number'>" + escaped(target.text()) + "</td><td class='" +
+              (met ? std::string("met'>met") : std::string("missed'>missed")) + "</td>";
+    } else {
+      html += "<td></td><td></td>";
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+std::string facts(const ordered_json& run) {
+  std::vector<std::pair<std::string, std::string>> rows{
+      {"back end", run["backend"].get<std::string>()},
+      {"seed", std::to_string(run["seed"].get<std::uint64_t>())},
+      {"status", run["status"].get<std::string>()},
+      {"simulated", number(run["duration_s"]) + " s, " + rounded(run["realtime_factor"].get<double>(), 3) + " × real time"},
+      {"tick", number(run["tick_us"]["median"]) + " µs median, " + number(run["tick_us"]["p99"]) + " µs p99"},
+      {"fallbacks", std::to_string(run["ticks"]["fallback"].get<long>())},
+      {"ticks with lost rank", std::to_string(run["ticks"]["lost_rank"].get<long>())}};
+  for (const auto& [name, value] : run["backend_options"].items()) rows.emplace_back(name, value.get<std::string>());
+  std::string html = "<table>\n";
+  for (const auto& [name, value] : rows) {
+    html += "<tr><td>" + escaped(name) + "</td><td>" + escaped(value) + "</td></tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+constexpr const char* style = R"(
+body { font-family: system-ui, 'DejaVu Sans', 'Liberation Sans', sans-serif; color: #222; background: #f6f6f3; margin: 0; }
+main { max-width: 1140px; margin: 0 auto; padding: 24px; }
+h1 { font-size: 24px; font-weight: 650; margin: 8px 0 20px; }
+section { background: #fff; border: 1px solid #e2e2dc; border-radius: 8px; padding: 16px; margin-bottom: 20px; }
+.columns { display: flex; gap: 40px; flex-wrap: wrap; }
+svg { display: block; width: 100%; height: auto; }
+table { border-collapse: collapse; font-size: 14px; }
+th, td { text-align: left; padding: 4px 14px 4px 0; border-bottom: 1px solid #eeeeea; }
+.number { text-align: right; font-variant-numeric: tabular-nums; }
+.met { color: #1a7f37; } .missed { color: #c0392b; font-weight: 600; }
+)";
+
+std::string page(const RunData& data, const std::string& contacts, const std::string& touched) {
+  const std::string title = escaped(data.run["stack"].get<std::string>());
+  std::string html = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" + title +
+                     "</title><style>" + style + "</style></head><body><main>\n<h1>" + title + "</h1>\n";
+  html += "<section class='columns'><div>" + metricsTable(data.run) + "</div><div>" + facts(data.run) + "</div></section>\n";
+  html += "<section>" + contacts + "</section>\n";
+  if (data.touched.rows() > 0) html += "<section>" + touched + "</section>\n";
+  html += "<section>" + drawTaskErrors(data) + "</section>\n";
+  return html + "</main></body></html>\n";
+}
+
+}  // namespace
+
+void writeReport(const std::string& folder) {
+  const RunData data = readRunFolder(folder);
+  const std::string contacts = drawContacts(data);
+  const std::string touched = drawTouchedPoints(data);
+  runtime::writeFile(folder + "/contacts.svg", contacts);
+  runtime::writeFile(folder + "/touched_points.svg", touched);
+  runtime::writeFile(folder + "/report.html", page(data, contacts, touched));
+}
+
+void addReport(CLI::App& program, Context& context) {
+  CLI::App* command = program.add_subcommand("report", "Make the report of a run folder again");
+  const auto folder = std::make_shared<std::string>();
+  command->add_option("RUN", *folder, "Folder of a run")->required()->type_name("");
+  command->footer("Examples:\n  tactus report runs/explore-table-null-space-seed1");
+  command->callback([=, &context] {
+    context.action = [=] {
+      writeReport(*folder);
+      std::cerr << *folder << "/report.html\n";
+      return exit_done;
+    };
+  });
+}
+
+}  // namespace tactus::app

@@ -1,0 +1,155 @@
+#include "apps/tactus/run_folder.h"
+
+#include <filesystem>
+
+#include "apps/tactus/targets.h"
+#include "apps/tactus/text.h"
+#include "apps/tactus/versions.h"
+#include "framework/runtime/file_error.h"
+#include "framework/runtime/percentile.h"
+
+namespace tactus::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+const char* statusText(runtime::Ending ending) {
+  switch (ending) {
+    case runtime::Ending::done: return "done";
+    case runtime::Ending::interrupted: return "interrupted";
+    case runtime::Ending::plant_error: return "plant-error";
+  }
+  return "";
+}
+
+bool isRunFolder(const fs::path& folder) {
+  const fs::path file = folder / "run.json";
+  if (!fs::exists(file)) return false;
+  const ordered_json json = ordered_json::parse(runtime::readFile(file.string()), nullptr, false);
+  return json.is_object() && json.value("format", "") == run_format;
+}
+
+ordered_json vectorToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+ordered_json describeFeatures(const Session& session) {
+  ordered_json features = ordered_json::array();
+  for (const SoughtFeature& feature : session.features()) {
+    ordered_json json{{"name", feature.name}, {"found", feature.estimate->found}, {"points", feature.estimate->points}};
+    if (feature.estimate->found) {
+      json["position_W"] = vectorToJson(feature.estimate->position_W);
+      json["height_m"] = feature.estimate->height;
+    }
+    if (feature.truth_W) json["truth_W"] = vectorToJson(*feature.truth_W);
+    features.push_back(std::move(json));
+  }
+  return features;
+}
+
+ordered_json describeTargets(const Session& session, const std::vector<control::Metric>& metrics) {
+  ordered_json json = ordered_json::object();
+  if (!session.wantedForce()) return json;
+  for (const Target& target : explorationTargets(metrics, *session.wantedForce(), session.desiredLinkCount())) {
+    json[target.metric] = toJson(target);
+  }
+  return json;
+}
+
+}  // namespace
+
+void writeJson(const std::string& path, const ordered_json& json) { runtime::writeFile(path, json.dump(2) + "\n"); }
+
+std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_end_label) {
+  std::string label = back_end_label;
+  for (char& c : label) {
+    if (c == '/' || c == '=') c = '-';
+  }
+  return "runs/" + stack.name + "-" + label + "-seed" + std::to_string(stack.run.seed);
+}
+
+void claimRunFolder(const std::string& folder, const Session& session) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw runtime::FileError(folder, "cannot be made a folder: " + error.message());
+  if (!fs::is_directory(folder)) throw runtime::FileError(folder, "is not a folder");
+  if (!fs::is_empty(folder) && !isRunFolder(folder)) {
+    throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
+  }
+  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg"}) fs::remove(fs::path(folder) / picture);
+  writeJson(folder + "/run.json", describeStart(session, "running"));
+}
+
+ordered_json describeStart(const Session& session, const std::string& status) {
+  ordered_json options = ordered_json::object();
+  for (const auto& [name, value] : session.stack().back_end.all()) options[name] = value.text;
+  return {{"format", run_format},
+          {"stack", session.stack().name},
+          {"file", session.stack().file},
+          {"backend", session.backEndName()},
+          {"backend_options", options},
+          {"seed", session.stack().run.seed},
+          {"status", status}};
+}
+
+ordered_json describeRun(const Session& session, const runtime::LoopResult& result) {
+  const runtime::RunStatistics& statistics = session.statistics();
+  const std::vector<double>& times = statistics.tickTimes();
+  const std::vector<control::Metric> metrics = session.metrics();
+
+  ordered_json json = describeStart(session, statusText(result.ending));
+  if (!result.message.empty()) json["message"] = result.message;
+  json["duration_s"] = result.simulated;
+  json["wall_clock_s"] = result.wall_clock;
+  json["realtime_factor"] = result.realtimeFactor();
+  json["tick_us"] = {{"median", runtime::percentile(times, 0.5)},
+                     {"p99", runtime::percentile(times, 0.99)},
+                     {"p999", runtime::percentile(times, 0.999)}};
+  json["ticks"] = {{"total", result.ticks},
+                   {"fallback", statistics.fallbacks},
+                   {"infeasible", statistics.infeasible},
+                   {"limited", statistics.limited},
+                   {"lost_rank", statistics.lost_rank}};
+  if (statistics.has_kkt) {
+    json["kkt_max"] = {{"stationarity", statistics.kkt_max.stationarity},
+                       {"primal", statistics.kkt_max.primal},
+                       {"complementarity", statistics.kkt_max.complementarity}};
+  }
+  json["metrics"] = ordered_json::object();
+  for (const control::Metric& metric : metrics) json["metrics"][metric.name] = metric.value;
+  json["wanted"] = describeTargets(session, metrics);
+  if (session.wantedForce()) json["wanted_force_N"] = *session.wantedForce();
+  json["features"] = describeFeatures(session);
+  json["versions"] = versions();
+  return json;
+}
+
+std::string summaryTable(const ordered_json& run) {
+  const auto number = [](const ordered_json& value) { return value.is_null() ? "–" : rounded(value.get<double>()); };
+  std::string text = run["stack"].get<std::string>() + " with " + run["backend"].get<std::string>() + ", seed " +
+                     std::to_string(run["seed"].get<std::uint64_t>()) + ": " + run["status"].get<std::string>() + "\n";
+  text += number(run["duration_s"]) + " s simulated in " + number(run["wall_clock_s"]) + " s, " +
+          rounded(run["realtime_factor"].get<double>(), 3) + " × real time; tick " + number(run["tick_us"]["median"]) +
+          " µs median, " + number(run["tick_us"]["p99"]) + " µs p99, " + number(run["tick_us"]["p999"]) + " µs p99.9\n";
+  text += "ticks: " + std::to_string(run["ticks"]["total"].get<long>());
+  for (const char* kind : {"fallback", "infeasible", "limited", "lost_rank"}) {
+    text += std::string(", ") + kind + " " + std::to_string(run["ticks"][kind].get<long>());
+  }
+  text += "\n";
+  if (run.contains("kkt_max")) {
+    text += "largest KKT residual: stationarity " + rounded(run["kkt_max"]["stationarity"].get<double>(), 3) + ", primal " +
+            rounded(run["kkt_max"]["primal"].get<double>(), 3) + "\n";
+  }
+  std::vector<std::vector<std::string>> rows{{"metric", "value", "wanted", ""}};
+  for (const auto& [name, value] : run["metrics"].items()) {
+    std::vector<std::string> row{name, number(value)};
+    if (run["wanted"].contains(name)) {
+      const Target target = targetFromJson(name, run["wanted"][name]);
+      row.push_back(target.text());
+      row.push_back(!value.is_null() && target.metBy(value.get<double>()) ? "met" : "missed");
+    }
+    rows.push_back(std::move(row));
+  }
+  return text + textTable(rows);
+}
+
+}  // namespace tactus::app

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/tactus/session.h"
+
+namespace tactus::app {
+
+inline constexpr const char* run_format = "tactus-run/1";
+
+/// runs/<stack>-<back end>-seed<N>
+std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_end_label);
+
+/// Makes the folder ready for a run: a new or empty one, or that of an earlier run, whose pictures are taken away.
+/// Leaves a run.json that says "running".  Throws FileError for a folder that holds anything else.
+void claimRunFolder(const std::string& folder, const Session& session);
+
+/// What run.json holds after a run; a figure that was never met is null.
+nlohmann::ordered_json describeRun(const Session& session, const runtime::LoopResult& result);
+
+/// Back end, seed, file: what is known before the run.
+nlohmann::ordered_json describeStart(const Session& session, const std::string& status);
+
+/// What describeRun holds, as a table for people.
+std::string summaryTable(const nlohmann::ordered_json& run);
+
+/// Writes JSON with a final line end; throws FileError.
+void writeJson(const std::string& path, const nlohmann::ordered_json& json);
+
+}  // namespace tactus::app

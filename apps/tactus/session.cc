@@ -1,0 +1,114 @@
+#include "apps/tactus/session.h"
+
+#include <cmath>
+
+#include "dsl/codes.h"
+#include "dsl/compile.h"
+#include "framework/runtime/feature_truth.h"
+
+namespace tactus::app {
+namespace {
+
+std::unique_ptr<sim::SimbodyPlant> makePlant(const dsl::Stack& stack, const description::Scene& scene) {
+  try {
+    return std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q);
+  } catch (const runtime::PlantError& error) {
+    dsl::Diagnostic diagnostic;
+    diagnostic.code = dsl::code::unfit_for_dynamics.id;
+    diagnostic.message = error.what();
+    diagnostic.place = stack.robot.place;
+    throw dsl::InvalidStack({diagnostic});
+  }
+}
+
+}  // namespace
+
+Session::Session(dsl::Stack stack, const control::Registry& registry)
+    : stack_(std::move(stack)),
+      scene_(stack_.scene(stack_.run.seed)),
+      controller_(dsl::compile(stack_, registry)),
+      plant_(makePlant(stack_, scene_)),
+      statistics_(std::lround(stack_.run.duration / controller_->period())) {
+  contacts_ = std::make_unique<runtime::ContactMetrics>(static_cast<int>(stack_.robot.links.size()),
+                                                        static_cast<int>(scene_.objects.size()), desiredLinks());
+  for (size_t i = 0; i < stack_.signals.size() && !touched_points_; ++i) {
+    touched_points_ = findPort<control::TouchedPoints>(i, "points");
+  }
+  findFeatures();
+}
+
+template <class T>
+const T* Session::findPort(size_t signal, const std::string& port) const {
+  const dsl::ElementInstance& instance = stack_.signals[signal];
+  for (const control::PortRow& row : instance.values.row().ports) {
+    if (row.name != port || row.type != control::PortType<T>::name) continue;
+    for (const control::NamedSignal& named : controller_->signals()) {
+      if (named.name == instance.name) return static_cast<const T*>(named.signal->port(port));
+    }
+  }
+  return nullptr;
+}
+
+std::vector<int> Session::desiredLinks() const {
+  for (size_t i = 0; i < stack_.signals.size(); ++i) {
+    // Frame i of the model is link i of the robot.
+    if (const auto* desired = findPort<control::FrameSet>(i, "desired")) return desired->frames;
+  }
+  return {};
+}
+
+void Session::findFeatures() {
+  for (size_t i = 0; i < stack_.signals.size(); ++i) {
+    const auto* estimate = findPort<control::FeatureEstimate>(i, "estimate");
+    if (!estimate) continue;
+    SoughtFeature feature{stack_.signals[i].name, estimate, {}};
+    for (const description::Object& object : scene_.objects) {
+      if (object.name == feature.name) feature.truth_W = runtime::highestPoint(object);
+    }
+    features_.push_back(feature);
+  }
+}
+
+runtime::LoopResult Session::run(const std::vector<runtime::Observer*>& others, const std::atomic<bool>& stop) {
+  std::vector<runtime::Observer*> observers{contacts_.get(), &statistics_};
+  observers.insert(observers.end(), others.begin(), others.end());
+  return runtime::runLoop(*plant_, *controller_, stack_.run.duration, observers, stop);
+}
+
+std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder) const {
+  runtime::RecorderOptions options;
+  options.folder = folder;
+  options.columns = stack_.run.columns == "all" ? runtime::ColumnSet::all : runtime::ColumnSet::standard;
+  options.row_rate = stack_.run.record_rate;
+  options.contacts = contacts_.get();
+  options.touched_points = touched_points_;
+  return std::make_unique<runtime::Recorder>(options);
+}
+
+std::vector<control::Metric> Session::metrics() const {
+  std::vector<control::Metric> metrics = contacts_->metrics();
+  for (const control::Level& level : controller_->levels()) {
+    for (const control::NamedTask& named : level.tasks) named.task->metrics(metrics);
+  }
+  for (const control::NamedSignal& named : controller_->signals()) named.signal->metrics(metrics);
+  if (touched_points_) metrics.push_back({"points_touched", static_cast<double>(touched_points_->points.size())});
+  for (const SoughtFeature& feature : features_) {
+    for (control::Metric& metric : runtime::featureMetrics(feature.name, *feature.estimate, feature.truth_W)) {
+      metrics.push_back(std::move(metric));
+    }
+  }
+  return metrics;
+}
+
+std::string Session::backEndName() const { return stack_.back_end.row().name; }
+
+std::optional<double> Session::wantedForce() const {
+  for (const dsl::LevelDescription& level : stack_.levels) {
+    for (const dsl::ElementInstance& task : level.tasks) {
+      if (task.values.row().name == "contact-force" && task.values.has("force")) return task.values.real("force");
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace tactus::app

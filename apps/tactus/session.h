@@ -1,0 +1,68 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/tactus/program.h"
+#include "dsl/stack.h"
+#include "framework/control/controller.h"
+#include "framework/runtime/contact_metrics.h"
+#include "framework/runtime/loop.h"
+#include "framework/runtime/recorder.h"
+#include "framework/runtime/run_statistics.h"
+#include "sim/simbody_plant.h"
+
+namespace tactus::app {
+
+/// A feature that a signal seeks by touch, and where the scene really has it.
+struct SoughtFeature {
+  std::string name;
+  const control::FeatureEstimate* estimate = nullptr;
+  std::optional<Eigen::Vector3d> truth_W;                          ///< none: no such object, or it has no top
+};
+
+/// A stack brought to life once: scene of its seed, controller, plant, and the watchers of the run.
+class Session {
+ public:
+  /// Throws dsl::InvalidStack; a robot that the plant refuses is one, too.
+  Session(dsl::Stack stack, const control::Registry& registry);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Runs for the stack's duration; `others` observe after contacts and statistics.
+  runtime::LoopResult run(const std::vector<runtime::Observer*>& others, const std::atomic<bool>& stop);
+  /// A recorder of this session as the stack asks for it, which writes into `folder`.
+  std::unique_ptr<runtime::Recorder> recordInto(const std::string& folder) const;
+  /// Figures of the run so far: contacts, tasks, signals, features.
+  std::vector<control::Metric> metrics() const;
+
+  const dsl::Stack& stack() const { return stack_; }
+  control::Controller& controller() { return *controller_; }
+  const runtime::RunStatistics& statistics() const { return statistics_; }
+  const std::vector<SoughtFeature>& features() const { return features_; }
+  std::string backEndName() const;
+  /// The force that the first contact-force task wants, N.
+  std::optional<double> wantedForce() const;
+  int desiredLinkCount() const { return static_cast<int>(desiredLinks().size()); }
+
+ private:
+  /// The value behind a port of that type and name; null when the signal's element has none.
+  template <class T>
+  const T* findPort(size_t signal, const std::string& port) const;
+  std::vector<int> desiredLinks() const;
+  void findFeatures();
+
+  dsl::Stack stack_;
+  description::Scene scene_;
+  std::unique_ptr<control::Controller> controller_;
+  std::unique_ptr<sim::SimbodyPlant> plant_;
+  std::unique_ptr<runtime::ContactMetrics> contacts_;
+  const control::TouchedPoints* touched_points_ = nullptr;
+  std::vector<SoughtFeature> features_;
+  runtime::RunStatistics statistics_;
+};
+
+}  // namespace tactus::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "apps/tactus/command.h"
+#include "apps/tactus/program.h"
+#include "dsl/diagnostic.h"
+
+namespace tactus::app {
+
+/// What every command that runs a stack takes.
+struct StackArguments {
+  StackOptions stack;
+  std::vector<std::string> plugins;
+
+  /// --duration, --seed, --set, --plugin
+  void declare(CLI::App& command);
+};
+
+/// Declares --plugin.
+void declarePlugins(CLI::App& command, std::vector<std::string>& plugins);
+
+/// Reads the stack, with its warnings on stderr.
+dsl::Stack readAloud(Program& program, const StackOptions& options);
+
+}  // namespace tactus::app

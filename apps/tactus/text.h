@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::app {
+
+/// "a, b, c"
+std::string joined(const std::vector<std::string>& words, const std::string& separator = ", ");
+
+/// The parts of `text` between separators, empty ones kept.
+std::vector<std::string> split(std::string_view text, char separator);
+
+/// Numbers separated by commas or blanks; `what` names them in the UsageError.
+std::vector<double> parseNumbers(const std::string& text, const std::string& what);
+
+/// `value` with `digits` significant digits, never in another locale; "–" for NaN.
+std::string rounded(double value, int digits = 4);
+
+/// A table with aligned columns: the first to the left, all others to the right; the first row is the head.
+std::string textTable(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace tactus::app

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+
+/// The stable codes of everything that can be said about a user's file.  A code never changes its meaning.
+namespace tactus::dsl {
+
+struct Code {
+  const char* id;
+  const char* meaning;
+};
+
+namespace code {
+// The file as text and as XML.
+inline constexpr Code unreadable_file{"E001", "a file is missing or cannot be read"};
+inline constexpr Code empty_file{"E002", "a file holds no element"};
+inline constexpr Code not_xml{"E003", "the text is not well-formed XML"};
+inline constexpr Code several_roots{"E004", "a file has more than one outermost element"};
+inline constexpr Code not_utf8{"E005", "the text is not UTF-8"};
+// Grammar.
+inline constexpr Code wrong_root{"E010", "the outermost element is not the expected one"};
+inline constexpr Code unknown_element{"E011", "no element has this name"};
+inline constexpr Code unknown_attribute{"E012", "the element has no such attribute"};
+inline constexpr Code missing_attribute{"E013", "a required attribute is missing"};
+inline constexpr Code bad_value{"E014", "a value is not of the attribute's type or out of its range"};
+inline constexpr Code misplaced_element{"E015", "an element stands where it must not"};
+inline constexpr Code missing_element{"E016", "a required element is missing"};
+inline constexpr Code too_many_elements{"E017", "an element stands more often than it may"};
+inline constexpr Code stray_text{"E018", "text stands between elements"};
+inline constexpr Code wrong_format{"E019", "the format number is not one that this version reads"};
+inline constexpr Code duplicate_name{"E020", "a name is given twice"};
+inline constexpr Code level_order{"E021", "the priorities of the levels do not rise"};
+// References.
+inline constexpr Code unknown_link{"E030", "the robot has no such link or group of links"};
+inline constexpr Code unknown_joint{"E031", "the robot has no such moving joint or group of joints"};
+inline constexpr Code unknown_object{"E032", "the scene has no such object"};
+inline constexpr Code unknown_port{"E033", "no signal or port has this name"};
+inline constexpr Code wrong_port_type{"E034", "a port gives another type than the attribute takes"};
+inline constexpr Code unknown_class{"E035", "no <defaults> class has this name"};
+inline constexpr Code unknown_parameter{"E036", "no <parameter> has this name"};
+inline constexpr Code unknown_back_end{"E037", "no back end has this name"};
+inline constexpr Code unknown_option{"E038", "the chosen back end has no such option"};
+inline constexpr Code reference_cycle{"E039", "includes, classes, carriers or signals refer to each other in a circle"};
+// Robot and scene.
+inline constexpr Code unknown_model{"E050", "the robot's model cannot be found"};
+inline constexpr Code wrong_start{"E051", "the start has not one value for each joint"};
+inline constexpr Code start_outside_limits{"E052", "the start is outside a joint's limits"};
+inline constexpr Code carrier_not_upright{"E053", "an object stands on one whose top is not level"};
+// Compiling.
+inline constexpr Code lacking_ability{"E060", "the back end cannot honour what the stack asks for"};
+inline constexpr Code refused_by_factory{"E061", "a task, a signal or a back end refuses its values"};
+inline constexpr Code unfit_for_dynamics{"E062", "the robot cannot be simulated"};
+inline constexpr Code plugin_failed{"E070", "a plugin cannot be loaded"};
+// Robot files.
+inline constexpr Code no_root_link{"E080", "no link of the robot is the root"};
+inline constexpr Code several_root_links{"E081", "more than one link has no parent"};
+inline constexpr Code kinematic_loop{"E082", "joints form a loop or share a child"};
+inline constexpr Code unsupported_joint{"E083", "the type of a joint is not supported"};
+inline constexpr Code reversed_limits{"E084", "a lower limit lies above its upper limit"};
+inline constexpr Code refused_by_urdf{"E085", "liburdfdom refuses the file"};
+// Warnings.
+inline constexpr Code no_inertia{"W001", "a moving link has no mass: kinematics only"};
+inline constexpr Code bad_mass{"W002", "the mass of a link is not positive"};
+inline constexpr Code bad_inertia{"W003", "a tensor is not that of a rigid body"};
+inline constexpr Code shape_not_felt{"W004", "a collision shape is replaced or left out"};
+inline constexpr Code urdf_remark{"W005", "liburdfdom passed over a part of the file"};
+inline constexpr Code unused_signal{"W010", "nothing reads a signal"};
+}  // namespace code
+
+inline constexpr std::array all_codes{
+    code::unreadable_file,    code::empty_file,         code::not_xml,          code::several_roots,
+    code::not_utf8,           code::wrong_root,         code::unknown_element,  code::unknown_attribute,
+    code::missing_attribute,  code::bad_value,          code::misplaced_element, code::missing_element,
+    code::too_many_elements,  code::stray_text,         code::wrong_format,     code::duplicate_name,
+    code::level_order,        code::unknown_link,       code::unknown_joint,    code::unknown_object,
+    code::unknown_port,       code::wrong_port_type,    code::unknown_class,    code::unknown_parameter,
+    code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
+    code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::lacking_ability,
+    code::refused_by_factory, code::unfit_for_dynamics, code::plugin_failed,    code::no_root_link,
+    code::several_root_links, code::kinematic_loop,     code::unsupported_joint, code::reversed_limits,
+    code::refused_by_urdf,    code::no_inertia,         code::bad_mass,         code::bad_inertia,
+    code::shape_not_felt,     code::urdf_remark,        code::unused_signal};
+
+}  // namespace tactus::dsl

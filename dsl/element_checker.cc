@@ -1,0 +1,290 @@
+#include "dsl/element_checker.h"
+
+#include <algorithm>
+#include <set>
+
+#include "dsl/nearest_name.h"
+
+namespace tactus::dsl {
+namespace {
+
+using control::AttributeRow;
+using control::ChildRow;
+using control::ElementKind;
+using control::ElementRow;
+using control::ElementValues;
+using control::Origin;
+using control::Value;
+
+std::string tag(const std::string& name) { return std::string("<").append(name).append(">"); }
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < most; ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > most ? text + ", …" : text;
+}
+
+std::string kindOf(const ChildRow& child) {
+  if (child.element == "@task") return "task";
+  if (child.element == "@signal") return "signal";
+  if (child.element == "@shape") return "shape";
+  return tag(child.element);
+}
+
+std::vector<std::string> attributeNames(const ElementRow& row, const ElementRow* more) {
+  std::vector<std::string> names;
+  for (const AttributeRow& attribute : row.attributes) names.push_back(attribute.name);
+  if (more)
+    for (const AttributeRow& attribute : more->attributes) names.push_back(attribute.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<const CheckedElement*> CheckedElement::all(std::string_view name) const {
+  std::vector<const CheckedElement*> found;
+  for (const CheckedElement& child : children)
+    if (child.row->name == name) found.push_back(&child);
+  return found;
+}
+
+const CheckedElement* CheckedElement::first(std::string_view name) const {
+  const auto found = all(name);
+  return found.empty() ? nullptr : found.front();
+}
+
+CheckedElement ElementChecker::check(const XmlElement& stack) {
+  readClasses(stack);
+  return checkElement(stack, *table_.find("stack"));
+}
+
+void ElementChecker::readClasses(const XmlElement& stack) {
+  for (const auto& child : stack.children) {
+    const XmlAttribute* name = child->name == "defaults" ? child->attribute("class") : nullptr;
+    if (!name) continue;
+    const auto [place, is_new] = classes_.emplace(name->value, DefaultsClass{child.get(), "", {}});
+    if (!is_new) {
+      findings_.errorAtValue(code::duplicate_name, *child, *name, "the stack has a class '" + name->value + "' already");
+      continue;
+    }
+    if (const XmlAttribute* base = child->attribute("base")) place->second.base = base->value;
+    readPrototypes(*child, place->second);
+  }
+  checkBases();
+}
+
+void ElementChecker::readPrototypes(const XmlElement& defaults, DefaultsClass& into) {
+  for (const auto& child : defaults.children) {
+    const ElementRow* row = table_.find(child->name);
+    if (!row) continue;  // the grammar says so
+    if (into.prototypes.count(child->name)) {
+      findings_.error(code::too_many_elements, *child, "this class gives values for " + tag(child->name) + " already");
+      continue;
+    }
+    ElementValues values(*row);
+    checkGivenAttributes(*child, *row, values);
+    Prototype& prototype = into.prototypes[child->name];
+    for (const auto& [name, value] : values.all()) {
+      if (name == "name" || name == "class") {
+        findings_.errorAtName(code::unknown_attribute, *child, *child->attribute(name),
+                              "an element in <defaults> has no attribute '" + name + "'");
+        continue;
+      }
+      Value inherited = value;
+      inherited.origin.kind = Origin::Kind::defaults_class;
+      inherited.origin.detail = defaults.attribute("class")->value;
+      prototype.emplace(name, std::move(inherited));
+    }
+  }
+}
+
+void ElementChecker::checkBases() {
+  std::vector<std::string> names;
+  for (const auto& [name, found] : classes_) names.push_back(name);
+  for (auto& [name, found] : classes_) {
+    if (found.base.empty()) continue;
+    const XmlAttribute& base = *found.xml->attribute("base");
+    if (!classes_.count(found.base)) {
+      findings_.errorAtValue(code::unknown_class, *found.xml, base, "the stack has no class '" + found.base + "'",
+                             nearestName(found.base, names));
+      found.base.clear();
+      continue;
+    }
+    std::set<std::string> seen{name};
+    for (std::string at = found.base; !at.empty(); at = classes_.at(at).base) {
+      if (seen.insert(at).second && classes_.count(at)) continue;
+      if (at == name)
+        findings_.errorAtValue(code::reference_cycle, *found.xml, base,
+                               "class '" + name + "' is its own base, directly or through others");
+      found.base.clear();
+      break;
+    }
+  }
+}
+
+bool ElementChecker::allows(const ChildRow& child, const ElementRow& row) const {
+  if (child.element == "@task") return row.kind == ElementKind::task;
+  if (child.element == "@signal") return row.kind == ElementKind::signal;
+  if (child.element == "@shape") return row.kind == ElementKind::shape;
+  return child.element == row.name;
+}
+
+std::vector<std::string> ElementChecker::allowedChildren(const ElementRow& row) const {
+  std::vector<std::string> names;
+  for (const ChildRow& child : row.children)
+    for (const ElementRow& candidate : table_.rows())
+      if (candidate.kind != ElementKind::back_end && allows(child, candidate)) names.push_back(candidate.name);
+  return names;
+}
+
+const ElementRow* ElementChecker::backEndOf(const XmlElement& controller) const {
+  const XmlAttribute* name = controller.attribute("backend");
+  return name ? table_.findBackEnd(name->value) : nullptr;
+}
+
+CheckedElement ElementChecker::checkElement(const XmlElement& element, const ElementRow& row) {
+  CheckedElement checked;
+  checked.xml = &element;
+  checked.row = &row;
+  checked.values = ElementValues(row);
+  checkText(element);
+  checked.complete = checkGivenAttributes(element, row, checked.values);
+  const bool prototype = element.parent && element.parent->name == "defaults";
+  if (!prototype) {
+    fillFromClass(element, checked.values);
+    if (!fillDefaults(element, row, checked.values)) checked.complete = false;
+  }
+  if (prototype) {
+    for (const auto& child : element.children)
+      findings_.error(code::misplaced_element, *child, "an element in <defaults> gives attributes only");
+  } else {
+    checkChildren(element, row, checked);
+  }
+  return checked;
+}
+
+void ElementChecker::checkText(const XmlElement& element) {
+  if (element.text_at != nowhere)
+    findings_.error(code::stray_text, *element.source, element.text_at, 1,
+                    "text must not stand in " + tag(element.name) + ": values are given as attributes");
+}
+
+void ElementChecker::checkChildren(const XmlElement& element, const ElementRow& row, CheckedElement& into) {
+  std::map<std::string, int> counts;
+  const auto ruleFor = [&](const ElementRow* child) {
+    return std::find_if(row.children.begin(), row.children.end(),
+                        [&](const ChildRow& candidate) { return child && allows(candidate, *child); });
+  };
+  for (const auto& child : element.children) {
+    const ElementRow* child_row = table_.find(child->name);
+    const auto rule = ruleFor(child_row);
+    if (rule == row.children.end()) {
+      const auto allowed = allowedChildren(row);
+      sayMisplaced(*child, element, allowed);
+      const auto meant = ruleFor(table_.find(nearestName(child->name, allowed)));
+      if (meant != row.children.end()) ++counts[meant->element];  // said once is enough
+      continue;
+    }
+    const int count = ++counts[rule->element];
+    if (rule->max >= 0 && count == rule->max + 1)
+      findings_.error(code::too_many_elements, *child,
+                      tag(element.name) + " takes at most " + std::to_string(rule->max) + " " + kindOf(*rule));
+    into.children.push_back(checkElement(*child, *child_row));
+  }
+  for (const ChildRow& rule : row.children)
+    if (counts[rule.element] < rule.min)
+      findings_.error(code::missing_element, element,
+                      tag(element.name) + " needs " + (rule.min == 1 ? "a " : std::to_string(rule.min) + " ") +
+                          kindOf(rule));
+}
+
+void ElementChecker::sayMisplaced(const XmlElement& child, const XmlElement& parent,
+                                  const std::vector<std::string>& allowed) {
+  const ElementRow* row = table_.find(child.name);
+  if (!row) {
+    std::string message = "there is no element " + tag(child.name);
+    if (child.name.find('.') != std::string::npos) message += " (is its plugin named by a <plugin>?)";
+    message += allowed.empty() ? "; " + tag(parent.name) + " takes none" : "; here may stand: " + listed(allowed);
+    return findings_.error(code::unknown_element, child, message, nearestName(child.name, allowed));
+  }
+  std::vector<std::string> homes;
+  for (const ElementRow& candidate : table_.rows())
+    for (const ChildRow& rule : candidate.children)
+      if (candidate.name != "defaults" && allows(rule, *row)) homes.push_back(tag(candidate.name));
+  findings_.error(code::misplaced_element, child,
+                  tag(child.name) + " must not stand in " + tag(parent.name) +
+                      (homes.empty() ? "" : ": it belongs in " + listed(homes)));
+}
+
+bool ElementChecker::checkGivenAttributes(const XmlElement& element, const ElementRow& row, ElementValues& values) {
+  bool right = true;
+  const ElementRow* back_end = row.name == "controller" ? backEndOf(element) : nullptr;
+  for (const XmlAttribute& attribute : element.attributes) {
+    const AttributeRow* known = row.attribute(attribute.name);
+    if (!known && back_end) known = back_end->attribute(attribute.name);
+    if (!known) {
+      right = false;
+      if (row.name == "controller" && !back_end) continue;  // which options there are depends on the back end
+      const std::string whose = back_end ? "back end '" + back_end->name + "'" : tag(element.name);
+      findings_.errorAtName(code::unknown_attribute, element, attribute,
+                            whose + " has no " + (back_end ? "option '" : "attribute '") + attribute.name + "'",
+                            nearestName(attribute.name, attributeNames(row, back_end)));
+      continue;
+    }
+    if (attribute.value.find("${") != std::string::npos) {
+      right = false;
+      continue;
+    }
+    std::string error;
+    auto value = control::parseValue(*known, attribute.value, error);
+    if (!value) {
+      right = false;
+      findings_.errorAtValue(code::bad_value, element, attribute, "attribute '" + attribute.name + "': " + error,
+                             known->type == control::ValueType::choice ? nearestName(attribute.value, known->choices) : "");
+      continue;
+    }
+    value->origin.kind = attribute.setting.empty() ? Origin::Kind::attribute : Origin::Kind::command_line;
+    value->origin.detail = attribute.setting;
+    value->origin.place = element.source->text.place(attribute.value_at);
+    values.set(attribute.name, std::move(*value));
+  }
+  return right;
+}
+
+void ElementChecker::fillFromClass(const XmlElement& element, ElementValues& values) {
+  const AttributeRow* row = values.row().attribute("class");
+  if (!row || row->type != control::ValueType::element_class || !values.has("class")) return;
+  std::string name = values.text("class");
+  if (!classes_.count(name)) {
+    std::vector<std::string> names;
+    for (const auto& [known, found] : classes_) names.push_back(known);
+    return findings_.errorAtValue(code::unknown_class, element, *element.attribute("class"),
+                                  "the stack has no class '" + name + "'", nearestName(name, names));
+  }
+  for (; !name.empty(); name = classes_.at(name).base) {
+    const auto& prototypes = classes_.at(name).prototypes;
+    const auto found = prototypes.find(element.name);
+    if (found == prototypes.end()) continue;
+    for (const auto& [attribute, value] : found->second)
+      if (!values.has(attribute) && !element.attribute(attribute)) values.set(attribute, value);
+  }
+}
+
+bool ElementChecker::fillDefaults(const XmlElement& element, const ElementRow& row, ElementValues& values) {
+  bool complete = true;
+  for (const AttributeRow& attribute : row.attributes) {
+    if (values.has(attribute.name) || element.attribute(attribute.name)) continue;
+    std::string error;
+    if (attribute.default_text) {
+      values.set(attribute.name, control::parseValue(attribute, *attribute.default_text, error).value());
+    } else if (attribute.required) {
+      complete = false;
+      findings_.error(code::missing_attribute, element,
+                      tag(element.name) + " needs the attribute '" + attribute.name + "'");
+    }
+  }
+  return complete;
+}
+
+}  // namespace tactus::dsl

@@ -1,0 +1,79 @@
+#include "dsl/findings.h"
+
+#include <algorithm>
+
+namespace tactus::dsl {
+namespace {
+
+/// Bytes of "<name".
+std::size_t tagLength(const XmlElement& element) { return element.name.size() + 1; }
+
+}  // namespace
+
+Diagnostic Findings::make(const Code& code, const XmlSource& source, std::size_t at, std::size_t length,
+                          const std::string& message) const {
+  Diagnostic diagnostic;
+  diagnostic.code = code.id;
+  diagnostic.message = message;
+  diagnostic.place = source.text.place(at);
+  const std::string& text = source.text.text();
+  const std::size_t begin = std::min(at, text.size());
+  diagnostic.length = std::max(1, countCharacters(std::string_view(text).substr(begin, length)));
+  diagnostic.source_line = source.text.line(at);
+  diagnostic.included_from = source.included_from;
+  return diagnostic;
+}
+
+void Findings::error(const Code& code, const XmlSource& source, std::size_t at, std::size_t length,
+                     const std::string& message) {
+  add(make(code, source, at, length, message));
+}
+
+void Findings::error(const Code& code, const XmlElement& element, const std::string& message,
+                     const std::string& suggestion) {
+  Diagnostic diagnostic = make(code, *element.source, element.at, tagLength(element), message);
+  diagnostic.suggestion = suggestion;
+  diagnostic.path = element.path();
+  add(std::move(diagnostic));
+}
+
+void Findings::errorAtName(const Code& code, const XmlElement& element, const XmlAttribute& attribute,
+                           const std::string& message, const std::string& suggestion) {
+  Diagnostic diagnostic = make(code, *element.source, attribute.name_at, attribute.name.size(), message);
+  diagnostic.suggestion = suggestion;
+  diagnostic.path = element.path();
+  add(std::move(diagnostic));
+}
+
+void Findings::errorAtValue(const Code& code, const XmlElement& element, const XmlAttribute& attribute,
+                            const std::string& message, const std::string& suggestion) {
+  Diagnostic diagnostic = make(code, *element.source, attribute.value_at, attribute.value_size, message);
+  diagnostic.suggestion = suggestion;
+  diagnostic.path = element.path();
+  add(std::move(diagnostic));
+}
+
+void Findings::warning(const Code& code, const XmlElement& element, const std::string& message) {
+  Diagnostic diagnostic = make(code, *element.source, element.at, tagLength(element), message);
+  diagnostic.severity = Severity::warning;
+  diagnostic.path = element.path();
+  add(std::move(diagnostic));
+}
+
+void Findings::add(Diagnostic diagnostic) {
+  auto& list = diagnostic.severity == Severity::error ? errors_ : warnings_;
+  const auto same = [&](const Diagnostic& other) {
+    return other.code == diagnostic.code && other.message == diagnostic.message &&
+           other.place.file == diagnostic.place.file && other.place.line == diagnostic.place.line &&
+           other.place.column == diagnostic.place.column;
+  };
+  if (std::any_of(list.begin(), list.end(), same)) return;  // a class's value is met by each of its users
+  if (list.size() < most) list.push_back(std::move(diagnostic));
+}
+
+void Findings::throwErrors() const {
+  if (errors_.empty()) return;
+  throw InvalidStack(errors_);
+}
+
+}  // namespace tactus::dsl

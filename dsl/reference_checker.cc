@@ -1,0 +1,145 @@
+#include "dsl/reference_checker.h"
+
+#include <algorithm>
+
+#include "dsl/nearest_name.h"
+#include "dsl/typed_attributes.h"
+
+namespace tactus::dsl {
+namespace {
+
+using control::AttributeRow;
+using control::ValueType;
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string> namesOf(const std::vector<description::Group>& groups) {
+  std::vector<std::string> names;
+  for (const auto& group : groups) names.push_back(group.name);
+  return names;
+}
+
+std::vector<std::string> linkNames(const description::Robot& robot, bool with_groups) {
+  std::vector<std::string> names = with_groups ? namesOf(robot.link_groups) : std::vector<std::string>{};
+  for (const auto& link : robot.links) names.push_back(link.name);
+  return names;
+}
+
+std::vector<std::string> jointNames(const description::Robot& robot) {
+  std::vector<std::string> names = namesOf(robot.joint_groups);
+  for (int i : robot.movingJoints()) names.push_back(robot.joints[static_cast<std::size_t>(i)].name);
+  return names;
+}
+
+}  // namespace
+
+void ReferenceChecker::say(const Code& code, const CheckedElement& element, const AttributeRow& row,
+                           const std::string& message, const std::string& suggestion) {
+  // A value from a class is told where the class gives it, by the element that uses it.
+  const XmlAttribute* written = element.xml->attribute(row.name);
+  const control::Origin& origin = element.values.value(row.name).origin;
+  if (written && origin.kind != control::Origin::Kind::defaults_class)
+    return findings_.errorAtValue(code, *element.xml, *written, message, suggestion);
+  findings_.error(code, *element.xml, "attribute '" + row.name + "'" +
+                  (origin.detail.empty() ? " by default" : " from class '" + origin.detail + "'") + ": " + message,
+                  suggestion);
+}
+
+void ReferenceChecker::check(const CheckedElement& element) {
+  for (const AttributeRow& row : element.row->attributes)
+    if (element.values.has(row.name)) checkValue(element, row);
+}
+
+void ReferenceChecker::checkValue(const CheckedElement& element, const AttributeRow& row) {
+  const std::string& text = element.values.text(row.name);
+  switch (row.type) {
+    case ValueType::link:
+      if (robot_known_) checkWords(element, row, linkNames(stack_.robot, false), code::unknown_link, "link");
+      break;
+    case ValueType::links:
+      if (robot_known_) checkWords(element, row, linkNames(stack_.robot, true), code::unknown_link, "link or group of links");
+      break;
+    case ValueType::joints:
+      if (robot_known_)
+        checkWords(element, row, jointNames(stack_.robot), code::unknown_joint, "moving joint or group of joints");
+      break;
+    case ValueType::object: {
+      std::vector<std::string> names;
+      for (const auto& object : stack_.objects) names.push_back(object.object.name);
+      if (!contains(names, text))
+        say(code::unknown_object, element, row, "the scene has no object '" + text + "'", nearestName(text, names));
+      break;
+    }
+    case ValueType::port:
+      if (signals_known_) checkPort(element, row);
+      break;
+    default: break;
+  }
+}
+
+void ReferenceChecker::checkWords(const CheckedElement& element, const AttributeRow& row,
+                                  const std::vector<std::string>& names, const Code& unknown, const std::string& what) {
+  const std::string& text = element.values.text(row.name);
+  auto words = row.type == ValueType::link ? std::vector<std::string>{text} : splitWords(text);
+  for (const std::string& word : words) {
+    if (contains(names, word)) continue;
+    if (contains(row.choices, word)) {
+      if (words.size() > 1) say(code::bad_value, element, row, "'" + word + "' stands alone: it names no others beside it");
+      continue;
+    }
+    std::vector<std::string> candidates = names;
+    candidates.insert(candidates.end(), row.choices.begin(), row.choices.end());
+    say(unknown, element, row, "the robot has no " + what + " '" + word + "'", nearestName(word, candidates));
+  }
+}
+
+void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeRow& row) {
+  const std::string& text = element.values.text(row.name);
+  const std::size_t dot = text.find('.');
+  const std::string signal = text.substr(0, dot), port = text.substr(dot + 1);
+  const auto found = std::find_if(stack_.signals.begin(), stack_.signals.end(),
+                                  [&](const ElementInstance& instance) { return instance.name == signal; });
+  if (found == stack_.signals.end()) {
+    std::vector<std::string> ports;
+    for (const ElementInstance& instance : stack_.signals)
+      for (const control::PortRow& candidate : instance.values.row().ports)
+        if (candidate.type == row.port_type) ports.push_back(instance.name + "." + candidate.name);
+    return say(code::unknown_port, element, row, "the stack has no signal '" + signal + "'", nearestName(text, ports));
+  }
+  read_signals_.push_back(signal);
+  std::vector<std::string> of_type, all;
+  for (const control::PortRow& candidate : found->values.row().ports) {
+    all.push_back(candidate.name);
+    if (candidate.type == row.port_type) of_type.push_back(candidate.name);
+  }
+  const auto& ports = found->values.row().ports;
+  const auto known = std::find_if(ports.begin(), ports.end(), [&](const auto& candidate) { return candidate.name == port; });
+  if (known == ports.end()) {
+    const std::string nearest = nearestName(port, all);
+    std::string listed;
+    for (const std::string& name : all) listed += (listed.empty() ? "" : ", ") + name;
+    return say(code::unknown_port, element, row,
+               "signal '" + signal + "' has no port '" + port + "'" + (listed.empty() ? "" : ": its ports are " + listed),
+               nearest.empty() ? "" : signal + "." + nearest);
+  }
+  if (known->type != row.port_type)
+    say(code::wrong_port_type, element, row,
+        "'" + text + "' is a " + known->type + ", but '" + row.name + "' takes a " + row.port_type,
+        of_type.size() == 1 ? signal + "." + of_type.front() : "");
+}
+
+void ReferenceChecker::warnOfUnusedSignals(const std::vector<const CheckedElement*>& signals) {
+  for (const CheckedElement* signal : signals) {
+    if (!signal->values.has("name")) continue;
+    const bool reads = std::any_of(signal->row->attributes.begin(), signal->row->attributes.end(), [&](const auto& row) {
+      return row.type == ValueType::port && signal->values.has(row.name);
+    });
+    if (!reads && !contains(read_signals_, signal->values.text("name")))
+      findings_.warning(code::unused_signal, *signal->xml,
+                        "nothing reads the signal '" + signal->values.text("name") + "'");
+  }
+}
+
+}  // namespace tactus::dsl

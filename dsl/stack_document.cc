@@ -1,0 +1,231 @@
+#include "dsl/stack_document.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "dsl/nearest_name.h"
+#include "dsl/typed_attributes.h"
+
+namespace tactus::dsl {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int most_includes = 200;
+
+struct Parameter {
+  std::string value;
+  std::string setting;
+};
+
+class DocumentReader {
+ public:
+  DocumentReader(const std::map<std::string, std::string>& set, Findings& findings) : set_(set), findings_(findings) {}
+
+  StackDocument run(const std::string& file) {
+    auto source = read(file, {});
+    if (!source) {
+      auto missing = std::make_shared<XmlSource>();
+      missing->text = SourceText(file, "");
+      findings_.error(code::unreadable_file, *missing, 0, 1, "the stack '" + file + "' cannot be read");
+      return std::move(document_);
+    }
+    document_.root = parseXml(source, findings_);
+    if (!document_.root) return std::move(document_);
+    if (document_.root->name != "stack") {
+      findings_.error(code::wrong_root, *document_.root,
+                      "a stack has <stack> outermost, not <" + document_.root->name + ">",
+                      nearestName(document_.root->name, {"stack"}));
+      document_.root.reset();
+      return std::move(document_);
+    }
+    open_files_.push_back(identity(file));
+    splice(*document_.root);
+    checkSettings();
+    substitute(*document_.root);
+    return std::move(document_);
+  }
+
+ private:
+  static std::string identity(const std::string& file) {
+    std::error_code error;
+    const fs::path path = fs::weakly_canonical(file, error);
+    return error ? file : path.string();
+  }
+
+  std::shared_ptr<XmlSource> read(const std::string& file, std::vector<description::Place> included_from) {
+    auto text = readFile(file);
+    if (!text) return nullptr;
+    document_.files.emplace(file, *text);
+    if (!included_from.empty()) document_.included_from.emplace(file, included_from);
+    auto source = std::make_shared<XmlSource>();
+    source->text = SourceText(file, std::move(*text));
+    source->included_from = std::move(included_from);
+    return source;
+  }
+
+  /// Notes parameters and replaces includes below `element`, in document order.
+  void splice(XmlElement& element) {
+    std::vector<std::unique_ptr<XmlElement>> children;
+    children.swap(element.children);
+    for (auto& child : children) {
+      if (child->name == "include") {
+        include(element, *child);
+      } else {
+        if (child->name == "parameter" && element.name == "stack") define(*child);
+        child->parent = &element;
+        splice(*child);
+        element.children.push_back(std::move(child));
+      }
+    }
+  }
+
+  void include(XmlElement& element, XmlElement& directive) {
+    refuseOtherAttributes(directive, {"file"}, findings_);
+    for (const auto& child : directive.children)
+      findings_.error(code::misplaced_element, *child, "<" + child->name + "> must not stand in <include>");
+    if (!requireAttribute(directive, "file", findings_)) return;
+    substitute(directive);
+    const XmlAttribute& given = *directive.attribute("file");
+    if (++includes_ > most_includes)
+      return findings_.error(code::reference_cycle, directive,
+                             "a stack may have at most " + std::to_string(most_includes) + " includes");
+    const std::string file = pathBeside(directive.source->text.file(), given.value);
+    if (std::find(open_files_.begin(), open_files_.end(), identity(file)) != open_files_.end())
+      return findings_.errorAtValue(code::reference_cycle, directive, given,
+                                    "'" + given.value + "' includes itself, directly or through others");
+    std::vector<description::Place> way{directive.place()};
+    way.insert(way.end(), directive.source->included_from.begin(), directive.source->included_from.end());
+    const auto source = read(file, std::move(way));
+    if (!source)
+      return findings_.errorAtValue(code::unreadable_file, directive, given,
+                                    "the file '" + given.value + "' cannot be read: looked for '" + file + "'");
+    auto root = parseXml(source, findings_);
+    if (!root || !fitsInto(element, *root)) return;
+    open_files_.push_back(identity(file));
+    splice(*root);
+    open_files_.pop_back();
+    for (auto& child : root->children) {
+      child->parent = &element;
+      element.children.push_back(std::move(child));
+    }
+  }
+
+  /// An included file has the element that it extends outermost; what stands inside takes the include's place.
+  bool fitsInto(const XmlElement& element, const XmlElement& root) {
+    if (root.name != element.name) {
+      findings_.error(code::wrong_root, root,
+                      "a file included into <" + element.name + "> has <" + element.name + "> outermost, not <" +
+                          root.name + ">");
+      return false;
+    }
+    if (root.text_at != nowhere)
+      findings_.error(code::stray_text, *root.source, root.text_at, 1, "text must not stand in <" + root.name + ">");
+    for (const XmlAttribute& attribute : root.attributes) {
+      if (root.name == "stack" && (attribute.name == "format" || attribute.name == "name")) {
+        if (attribute.name == "format" && attribute.value != "1")
+          findings_.errorAtValue(code::wrong_format, root, attribute,
+                                 "format '" + attribute.value + "' is not one that this version reads: expected '1'");
+      } else {
+        findings_.errorAtName(code::unknown_attribute, root, attribute,
+                              "the outermost element of an included file has no attribute '" + attribute.name + "'");
+      }
+    }
+    return true;
+  }
+
+  void define(const XmlElement& element) {
+    const XmlAttribute* name = element.attribute("name");
+    const XmlAttribute* value = element.attribute("value");
+    if (!name || !value) return;  // the grammar says so
+    if (value->value.find("${") != std::string::npos)
+      return findings_.errorAtValue(code::bad_value, element, *value,
+                                    "the value of a parameter is taken as written: '${' has no meaning in it");
+    Parameter parameter{value->value, ""};
+    if (const auto given = set_.find(name->value); given != set_.end())
+      parameter = {given->second, "--set " + given->first + "=" + given->second};
+    if (!parameters_.emplace(name->value, parameter).second)
+      findings_.errorAtValue(code::duplicate_name, element, *name,
+                             "the stack has a parameter '" + name->value + "' already");
+  }
+
+  std::vector<std::string> parameterNames() const {
+    std::vector<std::string> names;
+    for (const auto& [name, parameter] : parameters_) names.push_back(name);
+    return names;
+  }
+
+  void checkSettings() {
+    for (const auto& [name, value] : set_) {
+      if (value.find("${") != std::string::npos)
+        findings_.error(code::bad_value, *document_.root,
+                        "--set " + name + "=" + value + ": the value of a parameter is taken as written: '${' has no "
+                        "meaning in it");
+      if (!parameters_.count(name))
+        findings_.error(code::unknown_parameter, *document_.root,
+                        "--set " + name + "=" + value + ": the stack has no parameter '" + name + "'",
+                        nearestName(name, parameterNames()));
+    }
+  }
+
+  void substitute(XmlElement& element) {
+    if (element.name != "parameter")
+      for (XmlAttribute& attribute : element.attributes)
+        if (attribute.value.find("${") != std::string::npos) substitute(element, attribute);
+    for (auto& child : element.children) substitute(*child);
+  }
+
+  void substitute(const XmlElement& element, XmlAttribute& attribute) {
+    const std::string written = attribute.value;
+    std::string text, setting;
+    std::size_t at = 0;
+    for (std::size_t open; (open = written.find("${", at)) != std::string::npos;) {
+      const std::size_t close = written.find('}', open);
+      if (close == std::string::npos)
+        return findings_.errorAtValue(code::bad_value, element, attribute, "'${' is not closed by '}'");
+      const std::string name = written.substr(open + 2, close - open - 2);
+      const auto found = parameters_.find(name);
+      if (found == parameters_.end()) {
+        return sayUnknown(element, attribute, name);
+      }
+      text += written.substr(at, open - at) + found->second.value;
+      if (setting.empty()) setting = found->second.setting;
+      at = close + 1;
+    }
+    attribute.value = text + written.substr(at);
+    attribute.setting = setting;
+  }
+
+  /// Points at the ${…} itself.
+  void sayUnknown(const XmlElement& element, const XmlAttribute& attribute, const std::string& name) {
+    XmlAttribute reference = attribute;
+    const std::string_view raw =
+        std::string_view(element.source->text.text()).substr(attribute.value_at, attribute.value_size);
+    if (const std::size_t shift = raw.find("${" + name + "}"); shift != std::string_view::npos) {
+      reference.value_at += shift;
+      reference.value_size = name.size() + 3;
+    }
+    findings_.errorAtValue(code::unknown_parameter, element, reference, "the stack has no parameter '" + name + "'",
+                           nearestName(name, parameterNames()));
+  }
+
+  const std::map<std::string, std::string>& set_;
+  Findings& findings_;
+  StackDocument document_;
+  std::map<std::string, Parameter> parameters_;
+  std::vector<std::string> open_files_;
+  int includes_ = 0;
+};
+
+}  // namespace
+
+std::string pathBeside(const std::string& from, const std::string& file) {
+  const fs::path path(file);
+  return path.is_absolute() ? file : (fs::path(from).parent_path() / path).lexically_normal().string();
+}
+
+StackDocument readDocument(const std::string& file, const std::map<std::string, std::string>& set, Findings& findings) {
+  return DocumentReader(set, findings).run(file);
+}
+
+}  // namespace tactus::dsl

@@ -1,0 +1,198 @@
+#include "dsl/read_stack.h"
+
+namespace tactus::dsl {
+namespace {
+
+using control::AttributeRow;
+using control::ElementKind;
+using control::ElementRow;
+using control::ValueType;
+
+const AttributeRow class_of_object{.name = "class",
+                                   .type = ValueType::element_class,
+                                   .description = "The <defaults> class whose values this object takes where it gives none."};
+
+AttributeRow shapePose() {
+  return {.name = "pose",
+          .type = ValueType::reals,
+          .unit = "m, rad",
+          .default_text = "0 0 0",
+          .description = "Place in the object: x y z, or x y z roll pitch yaw (fixed axes)."};
+}
+
+AttributeRow positiveLength(const std::string& name, const std::string& description) {
+  return {.name = name, .type = ValueType::real, .unit = "m", .required = true, .description = description, .lower = 0,
+          .lower_open = true};
+}
+
+ElementRow stackRow() {
+  return {.name = "stack",
+          .kind = ElementKind::structure,
+          .description = "A robot, a scene, signals, and tasks in levels of priority: everything that one controller is made of.",
+          .attributes = {{.name = "format", .type = ValueType::integer, .required = true,
+                          .description = "The version of the language; this one is 1."},
+                         {.name = "name", .type = ValueType::identifier,
+                          .description = "The name that runs are filed under; not given: that of the file."}},
+          .children = {{"parameter"}, {"include"}, {"defaults"}, {"plugin"}, {"robot", 1, 1}, {"scene", 0, 1},
+                       {"signals"}, {"level", 1}, {"controller", 1, 1}, {"run", 0, 1}}};
+}
+
+ElementRow parameterRow() {
+  return {.name = "parameter",
+          .kind = ElementKind::structure,
+          .description = "A value with a name, put into other attributes by ${name}; --set name=value replaces it.",
+          .attributes = {{.name = "name", .type = ValueType::identifier, .required = true, .description = "Its name."},
+                         {.name = "value", .type = ValueType::text, .required = true, .description = "Taken as written."},
+                         {.name = "unit", .type = ValueType::text, .description = "For the reader; nothing is converted."}}};
+}
+
+ElementRow includeRow() {
+  return {.name = "include",
+          .kind = ElementKind::structure,
+          .description = "Stands for what the file holds.  That file has the same element outermost as the one around the include.",
+          .attributes = {{.name = "file", .type = ValueType::file, .required = true,
+                          .description = "Relative to the folder of the file in which the include stands."}}};
+}
+
+ElementRow defaultsRow() {
+  return {.name = "defaults",
+          .kind = ElementKind::structure,
+          .description = "Values for elements that name this class: each child gives them for its kind of element.",
+          .attributes = {{.name = "class", .type = ValueType::identifier, .required = true, .description = "Its name."},
+                         {.name = "base", .type = ValueType::element_class,
+                          .description = "A class whose values hold where this one gives none."}},
+          .children = {{"@task"}, {"@signal"}, {"object"}}};
+}
+
+ElementRow pluginRow() {
+  return {.name = "plugin",
+          .kind = ElementKind::structure,
+          .description = "Loads the elements of a plugin, found by its name and never by a path.",
+          .attributes = {{.name = "name", .type = ValueType::text, .required = true, .description = "Its name."}}};
+}
+
+ElementRow robotRow() {
+  return {.name = "robot",
+          .kind = ElementKind::structure,
+          .description = "The robot that is controlled.",
+          .attributes = {{.name = "model", .type = ValueType::file, .required = true,
+                          .description = "A model by its name, or a URDF file relative to this one."}},
+          .children = {{"start", 0, 1}}};
+}
+
+ElementRow startRow() {
+  return {.name = "start",
+          .kind = ElementKind::structure,
+          .description = "Where the joints are at time 0; not given: 0, or the nearest value inside the limits.",
+          .attributes = {{.name = "q", .type = ValueType::reals, .unit = "rad or m", .required = true,
+                          .description = "One value for each moving joint, in the order of the model."}}};
+}
+
+ElementRow sceneRow() {
+  return {.name = "scene",
+          .kind = ElementKind::structure,
+          .description = "The world around the robot.",
+          .attributes = {{.name = "gravity", .type = ValueType::reals, .unit = "m/s²", .default_text = "0 0 -9.81",
+                          .description = "In the world frame, z up.", .count = 3}},
+          .children = {{"object"}, {"include"}}};
+}
+
+ElementRow objectRow() {
+  return {.name = "object",
+          .kind = ElementKind::structure,
+          .description = "A fixed object: the union of its shapes.",
+          .attributes = {{.name = "name", .type = ValueType::identifier, .required = true,
+                          .description = "The name under which references, messages and the log know it."},
+                         class_of_object,
+                         {.name = "pose", .type = ValueType::reals, .unit = "m, rad", .default_text = "0 0 0",
+                          .description = "x y z, or x y z roll pitch yaw (fixed axes), in the world or, with `on`, "
+                                         "from the middle of the carrier's top."},
+                         {.name = "on", .type = ValueType::object,
+                          .description = "The object that carries it: it moves along with that one's jitter."},
+                         {.name = "jitter", .type = ValueType::reals, .unit = "m", .default_text = "0 0 0",
+                          .description = "Each coordinate moves by a uniform draw from ± this, drawn from the seed.",
+                          .lower = 0, .count = 3},
+                         {.name = "stiffness", .type = ValueType::real, .unit = "N/m", .default_text = "2000",
+                          .description = "Of the Hunt–Crossley normal force.", .lower = 0, .lower_open = true},
+                         {.name = "dissipation", .type = ValueType::real, .unit = "s/m", .default_text = "2",
+                          .description = "Of the Hunt–Crossley normal force.", .lower = 0},
+                         {.name = "friction", .type = ValueType::real, .unit = "1", .default_text = "0.2",
+                          .description = "Coulomb coefficient μ.", .lower = 0}},
+          .children = {{"@shape", 1}}};
+}
+
+ElementRow shapeRow(const std::string& name, const std::string& description, std::vector<AttributeRow> sizes) {
+  sizes.push_back(shapePose());
+  return {.name = name, .kind = ElementKind::shape, .description = description, .attributes = std::move(sizes)};
+}
+
+ElementRow signalsRow() {
+  return {.name = "signals",
+          .kind = ElementKind::structure,
+          .description = "Named sources of values that tasks and other signals read as signal.port, in any order.",
+          .children = {{"@signal"}, {"include"}}};
+}
+
+ElementRow levelRow() {
+  return {.name = "level",
+          .kind = ElementKind::structure,
+          .description = "Tasks of one priority.  Lower levels must not disturb those above.",
+          .attributes = {{.name = "priority", .type = ValueType::integer, .required = true,
+                          .description = "1 is the highest; the levels of a stack rise strictly.", .lower = 1},
+                         {.name = "weight", .type = ValueType::real, .unit = "1",
+                          .description = "For weighted back ends; not given: by their ratio.", .lower = 0, .lower_open = true},
+                         {.name = "strict", .type = ValueType::flag, .default_text = "false",
+                          .description = "Refuse back ends that would only weigh this level against others."}},
+          .children = {{"@task", 1}, {"include"}}};
+}
+
+ElementRow controllerRow() {
+  return {.name = "controller",
+          .kind = ElementKind::structure,
+          .description = "The back end that solves every tick, with that back end's own options as further attributes.",
+          .attributes = {{.name = "backend", .type = ValueType::text, .required = true, .description = "Its name."},
+                         {.name = "rate", .type = ValueType::real, .unit = "Hz", .default_text = "1000",
+                          .description = "Ticks per second.", .lower = 0, .lower_open = true}}};
+}
+
+ElementRow runRow() {
+  return {.name = "run",
+          .kind = ElementKind::structure,
+          .description = "What `tactus run` does when it is not told otherwise.",
+          .attributes = {{.name = "duration", .type = ValueType::real, .unit = "s", .default_text = "10",
+                          .description = "Simulated time.", .lower = 0, .lower_open = true},
+                         {.name = "seed", .type = ValueType::integer, .default_text = "1",
+                          .description = "Of every draw; 0 draws no jitter.", .lower = 0}},
+          .children = {{"record", 0, 1}}};
+}
+
+ElementRow recordRow() {
+  return {.name = "record",
+          .kind = ElementKind::structure,
+          .description = "What goes into log.csv.",
+          .attributes = {{.name = "columns", .type = ValueType::choice, .default_text = "default",
+                          .description = "`all` adds every joint.", .choices = {"default", "all"}},
+                         {.name = "rate", .type = ValueType::real, .unit = "Hz", .default_text = "100",
+                          .description = "Rows per simulated second.", .lower = 0, .lower_open = true}}};
+}
+
+}  // namespace
+
+void addStructureElements(control::Registry& registry) {
+  for (ElementRow row : {stackRow(), parameterRow(), includeRow(), defaultsRow(), pluginRow(), robotRow(), startRow(),
+                         sceneRow(), objectRow(), signalsRow(), levelRow(), controllerRow(), runRow(), recordRow()})
+    registry.addStructure(std::move(row));
+  registry.addStructure(shapeRow("plane", "The half space below z = 0 of its own frame.", {}));
+  registry.addStructure(shapeRow("box", "A box about its own origin.",
+                                 {{.name = "size", .type = ValueType::reals, .unit = "m", .required = true,
+                                   .description = "Full lengths of its edges along x y z.", .lower = 0, .lower_open = true,
+                                   .count = 3}}));
+  registry.addStructure(shapeRow("sphere", "A sphere about its own origin.", {positiveLength("radius", "Its radius.")}));
+  registry.addStructure(shapeRow("cylinder", "A cylinder along z about its own origin.",
+                                 {positiveLength("radius", "Its radius."), positiveLength("length", "Its full height.")}));
+  registry.addStructure(shapeRow("capsule", "A capsule along z about its own origin.",
+                                 {positiveLength("radius", "Its radius."),
+                                  positiveLength("length", "Of its straight part.")}));
+}
+
+}  // namespace tactus::dsl

@@ -1,0 +1,159 @@
+#include "framework/control/least_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus::control {
+namespace {
+
+enum RowState { row_free, row_active, row_set_aside };
+
+constexpr double violation_tolerance = 1e-13;                      // relative to the size of c and d
+constexpr double dependence_tolerance = 1e-10;                     // sine of a row's angle to the active ones
+constexpr int steps_per_row = 20;
+
+}  // namespace
+
+LeastDistance::LeastDistance(int dimension, int row_capacity)
+    : active_(dimension),
+      state_(row_capacity),
+      x_(dimension),
+      multipliers_(row_capacity),
+      violations_(row_capacity),
+      Q_(dimension, dimension),
+      R_(dimension, dimension),
+      z_(dimension),
+      projection_(dimension),
+      r_(dimension) {}
+
+LeastDistance::Outcome LeastDistance::solve(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d,
+                                            const Eigen::Ref<const Eigen::VectorXd>& c, bool release) {
+  n_ = static_cast<int>(rows.rows());
+  m_ = static_cast<int>(rows.cols());
+  x_.head(n_) = c;
+  multipliers_.head(m_).setZero();
+  state_.head(m_).setZero();
+  active_count_ = released_ = steps_ = 0;
+  step_limit_ = steps_per_row * (m_ + 1);
+  tolerance_ = violation_tolerance * c.norm();
+  for (int row = mostViolated(rows, d); row >= 0; row = mostViolated(rows, d)) {
+    const Outcome outcome = addRow(rows, d, row, release);
+    if (outcome != Outcome::solved) return outcome;
+  }
+  restoreAccuracy(d, c);
+  return Outcome::solved;
+}
+
+int LeastDistance::mostViolated(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d) {
+  auto violations = violations_.head(m_);
+  violations = -d;
+  for (int k = 0; k < n_; ++k) violations += x_[k] * rows.row(k).transpose();
+  int worst = -1;
+  double largest = 0;
+  for (int j = 0; j < m_; ++j) {
+    const double tolerance = tolerance_ + violation_tolerance * std::abs(d[j]);
+    if (state_[j] != row_free || violations[j] <= tolerance || violations[j] <= largest) continue;
+    largest = violations[j];
+    worst = j;
+  }
+  return worst;
+}
+
+// Classical Gram–Schmidt, twice.
+void LeastDistance::decompose(const ConstColumnsRef& rows, int row) {
+  const auto Q = Q_.topLeftCorner(n_, active_count_);
+  auto z = z_.head(n_);
+  auto projection = projection_.head(active_count_);
+  auto again = r_.head(active_count_);
+  z = rows.col(row);
+  projection.noalias() = Q.transpose() * z;
+  z.noalias() -= Q * projection;
+  again.noalias() = Q.transpose() * z;
+  z.noalias() -= Q * again;
+  projection += again;
+}
+
+void LeastDistance::append(int row) {
+  Q_.col(active_count_).head(n_) = z_.head(n_).normalized();
+  R_.col(active_count_).head(active_count_) = projection_.head(active_count_);
+  R_(active_count_, active_count_) = z_.head(n_).norm();
+  active_[active_count_++] = row;
+  state_[row] = row_active;
+}
+
+void LeastDistance::remove(const ConstColumnsRef& rows, int position) {
+  const int count = active_count_;
+  state_[active_[position]] = row_free;
+  multipliers_[active_[position]] = 0;
+  active_count_ = position;
+  for (int i = position + 1; i < count; ++i) {
+    decompose(rows, active_[i]);
+    append(active_[i]);
+  }
+}
+
+LeastDistance::Outcome LeastDistance::addRow(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d,
+                                             int row, bool release) {
+  while (true) {
+    if (++steps_ > step_limit_) return Outcome::exhausted;
+    decompose(rows, row);
+    auto r = r_.head(active_count_);
+    r = projection_.head(active_count_);
+    R_.topLeftCorner(active_count_, active_count_).triangularView<Eigen::Upper>().solveInPlace(r);
+    const double free_part = z_.head(n_).squaredNorm();
+    const bool dependent = active_count_ == n_ || free_part < dependence_tolerance * dependence_tolerance;
+    const double violation = rows.col(row).dot(x_.head(n_)) - d[row];
+
+    const double full = dependent ? std::numeric_limits<double>::infinity() : violation / free_part;
+    double step = full;
+    int leaving = -1;
+    for (int i = 0; i < active_count_ && release; ++i) {
+      if (r[i] <= 0) continue;
+      const double limit = multipliers_[active_[i]] / r[i];
+      if (limit < step) {
+        step = limit;
+        leaving = i;
+      }
+    }
+    if (dependent && leaving < 0) {
+      // No held row can give way.  What is violated by rounding alone is let be.
+      const double size = tolerance_ / violation_tolerance + std::abs(d[row]);
+      if (release && violation > std::sqrt(violation_tolerance) * size) return Outcome::infeasible;
+      state_[row] = row_set_aside;
+      return Outcome::solved;
+    }
+    if (!dependent) x_.head(n_) -= step * z_.head(n_);
+    for (int i = 0; i < active_count_; ++i) multipliers_[active_[i]] -= step * r[i];
+    multipliers_[row] += step;
+    if (leaving < 0) {
+      append(row);
+      return Outcome::solved;
+    }
+    ++released_;
+    remove(rows, leaving);
+  }
+}
+
+// The same point from the active rows alone: B x = d means Qᵀ x = R⁻ᵀ d, and x = c − Bᵀ λ.
+void LeastDistance::restoreAccuracy(const Eigen::Ref<const Eigen::VectorXd>& d,
+                                    const Eigen::Ref<const Eigen::VectorXd>& c) {
+  if (active_count_ == 0) return;
+  const auto R = R_.topLeftCorner(active_count_, active_count_);
+  const auto Q = Q_.topLeftCorner(n_, active_count_);
+  auto target = projection_.head(active_count_);                   // R⁻ᵀ d
+  auto lambda = r_.head(active_count_);
+  for (int i = 0; i < active_count_; ++i) target[i] = d[active_[i]];
+  R.transpose().triangularView<Eigen::Lower>().solveInPlace(target);
+  lambda = -target;
+  lambda.noalias() += Q.transpose() * c;
+  x_.head(n_) = c;
+  x_.head(n_).noalias() -= Q * lambda;
+  R.triangularView<Eigen::Upper>().solveInPlace(lambda);
+  for (int i = 0; i < active_count_; ++i) multipliers_[active_[i]] = lambda[i];
+  // Once more, against the rounding of the first projection where c is much larger than x.
+  target.noalias() -= Q.transpose() * x_.head(n_);
+  x_.head(n_).noalias() += Q * target;
+}
+
+}  // namespace tactus::control

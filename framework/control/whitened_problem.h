@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/control/tick_problem.h"
+#include "framework/control/tick_solution.h"
+
+namespace tactus::control {
+
+/// n × m with contiguous rows: column j is the j-th row vector of a problem, transposed.
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ColumnsRef = Eigen::Ref<RowMajorMatrix, 0, Eigen::OuterStride<>>;
+using ConstColumnsRef = Eigen::Ref<const RowMajorMatrix, 0, Eigen::OuterStride<>>;
+
+/// A tick problem in whitened coordinates: M = L Lᵀ, y = L⁻¹ τ, A = J L⁻ᵀ.  Then J M⁻¹ τ = A y, and the M⁻¹ metric
+/// of torques is the Euclidean one of y.  Rows are kept as unit columns of Aᵀ with their norms apart, so that rows
+/// whose units differ by 1e6 weigh the same in every rank decision.  Takes no memory after construction.
+class WhitenedProblem {
+ public:
+  explicit WhitenedProblem(const TickProblem& shape);
+
+  /// False when the mass matrix is not positive definite or a row or force is not finite.
+  bool update(const TickProblem& problem);
+
+  int dof() const { return dof_; }
+  int levelCount() const { return static_cast<int>(levels_.size()); }
+  /// M = L Lᵀ; the strictly upper part is not meant to be read.
+  const Eigen::MatrixXd& massFactor() const { return cholesky_.matrixLLT(); }
+
+  int equalityRows(int level) const { return levels_[level].equalities; }
+  /// Inequality rows of all levels above `level` (of `levelCount()`: all); they come first in `inequalities()`.
+  int inequalityRowsAbove(int level) const;
+
+  /// Unit columns, dof × rows.  A row without effect (J = 0) is a zero column.
+  auto equalities(int level) const {
+    return columns_.middleCols(levels_[level].first_equality, levels_[level].equalities);
+  }
+  auto inequalities() const { return columns_.middleCols(first_inequality_, inequality_count_); }
+  const Eigen::VectorXd& norms() const { return norms_; }          ///< of the columns of A ᵀ, all rows
+  /// Index into norms() of the first equality row of a level.
+  int firstEquality(int level) const { return levels_[level].first_equality; }
+  int firstInequality() const { return first_inequality_; }
+  /// Where row j of `equalities` and of `inequalities` stands in the problem; j counts as norms() does.
+  const ActiveRow& origin(int j) const { return origins_[j]; }
+
+  /// y°_i = L⁻¹ Σ JᵀF over the level's tasks.
+  auto ownTorque(int level) const { return own_torques_.col(level); }
+  /// τ = L y.
+  void toTorque(const Eigen::VectorXd& y, Eigen::VectorXd& torque) const;
+
+  /// ‖J M⁻¹ τ − a‖ of a level for τ = L y.  J stacks its equality rows and its inequality rows with F ≠ 0;
+  /// a = J M⁻¹ τ°, or the acceleration that a task asks for.
+  double residual(const TickProblem& problem, int level, const Eigen::VectorXd& y);
+
+ private:
+  struct LevelRows {
+    int first_equality = 0;
+    int equalities = 0;
+    int first_inequality = 0;
+    int inequalities = 0;
+  };
+  void gather(const TickProblem& problem);
+  void whiten();
+
+  int dof_;
+  int count_ = 0;                                                  // rows of this tick
+  int first_inequality_ = 0;
+  int inequality_count_ = 0;
+  std::vector<LevelRows> levels_;
+  std::vector<ActiveRow> origins_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  RowMajorMatrix columns_;                                         // dof × row capacity
+  Eigen::VectorXd norms_;
+  Eigen::VectorXd forces_;
+  Eigen::MatrixXd own_torques_;                                    // dof × levels
+  Eigen::VectorXd difference_;
+};
+
+}  // namespace tactus::control

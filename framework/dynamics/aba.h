@@ -1,0 +1,12 @@
+#pragma once
+
+#include "framework/dynamics/kinematics.h"
+
+/// The articulated-body algorithm, Featherstone (2008), table 7.1.
+namespace tactus::dynamics {
+
+/// Forward dynamics: q̈ = M⁻¹ (τ − b − g), in time linear in the number of bodies.  gravity_W in m/s², world axes.
+void aba(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& tau,
+         const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& qdd);
+
+}  // namespace tactus::dynamics

@@ -1,0 +1,21 @@
+#include "framework/dynamics/cholesky.h"
+
+#include <cmath>
+
+namespace tactus::dynamics {
+
+bool choleskyFactor(const Eigen::MatrixXd& M, Eigen::MatrixXd& L) {
+  const Eigen::Index n = M.rows();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    auto column = L.col(j).tail(n - j);
+    column = M.col(j).tail(n - j);
+    for (Eigen::Index k = 0; k < j; ++k) column.noalias() -= L(j, k) * L.col(k).tail(n - j);
+    if (!(column[0] > 0)) return false;
+    const double diagonal = std::sqrt(column[0]);
+    column[0] = diagonal;
+    column.tail(n - j - 1) *= 1 / diagonal;
+  }
+  return true;
+}
+
+}  // namespace tactus::dynamics

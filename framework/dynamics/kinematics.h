@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "framework/dynamics/model.h"
+
+/// Kinematics of a Model, and the memory that all algorithms of this room share.
+///
+/// Everything is in world axes about the world origin: then no transform stands between a body and its parent, the
+/// recursions of Featherstone (2008) become plain sums, and one joint axis serves all Jacobians and the mass matrix.
+/// The price is rounding of the order ε (distance from the base / size of the body)² in moments of inertia.
+namespace tactus::dynamics {
+
+/// 3 × dof and 6 × dof blocks of any column-major matrix.
+using PointJacobianRef = Eigen::Ref<Eigen::Matrix<double, 3, Eigen::Dynamic>, 0, Eigen::OuterStride<>>;
+using FrameJacobianRef = Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic>, 0, Eigen::OuterStride<>>;
+using RowRef = Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
+
+/// What the sweeps leave behind for one body.  Which sweep fills what is said at the function.
+struct BodyState {
+  Eigen::Matrix3d R_WB;
+  Eigen::Vector3d p_WB;
+  MotionVector axis;                                               ///< S, joint axis
+  MotionVector velocity;                                           ///< v
+  MotionVector bias_acceleration;                                  ///< a when q̈ = 0, without gravity: J̇ q̇
+  RigidBodyInertia inertia;                                        ///< I
+  RigidBodyInertia composite;                                      ///< Iᶜ, of the subtree
+  ForceVector force;                                               ///< f, through the joint
+  Matrix6d articulated;                                            ///< Iᴬ
+  ForceVector articulated_bias;                                    ///< pᴬ
+  ForceVector axis_force;                                          ///< U = Iᴬ S
+  MotionVector acceleration;                                       ///< a
+  double axis_inertia;                                             ///< D = Sᵀ U
+  double axis_torque;                                              ///< u = τ − Sᵀ pᴬ
+};
+
+/// Memory of the algorithms for one model, taken once.
+struct Workspace {
+  explicit Workspace(const Model& model) : bodies(model.dof()) {}
+  std::vector<BodyState> bodies;
+};
+
+/// Poses and joint axes: R_WB, p_WB, axis.
+void forwardKinematics(const Model& model, const Eigen::VectorXd& q, Workspace& workspace);
+/// Velocities and J̇ q̇: velocity, bias_acceleration.  After forwardKinematics.
+void forwardVelocities(const Model& model, const Eigen::VectorXd& qd, Workspace& workspace);
+/// Inertias in the world: inertia.  After forwardKinematics.
+void worldInertias(const Model& model, Workspace& workspace);
+
+// After forwardKinematics; `frame` is an index into Model::frames().
+
+/// X_WF.
+Eigen::Isometry3d framePose(const Model& model, const Workspace& workspace, int frame);
+Eigen::Vector3d framePosition(const Model& model, const Workspace& workspace, int frame);
+/// J with J q̇ = velocity of the point of `frame` now at point_W.  Overwritten, zero columns included.
+void pointJacobian(const Model& model, const Workspace& workspace, int frame, const Eigen::Vector3d& point_W,
+                   PointJacobianRef J);
+/// direction_Wᵀ J of that point, without forming J.
+void directionJacobian(const Model& model, const Workspace& workspace, int frame, const Eigen::Vector3d& point_W,
+                       const Eigen::Vector3d& direction_W, RowRef row);
+/// Linear rows (of the frame's origin) first, world axes.
+void frameJacobian(const Model& model, const Workspace& workspace, int frame, FrameJacobianRef J);
+
+// After forwardVelocities.
+
+Vector6d frameVelocity(const Model& model, const Workspace& workspace, int frame);
+Eigen::Vector3d pointVelocity(const Model& model, const Workspace& workspace, int frame,
+                              const Eigen::Vector3d& point_W);
+/// J̇ q̇ of the Jacobians above: acceleration when q̈ = 0, gravity aside.
+Eigen::Vector3d pointAccelerationBias(const Model& model, const Workspace& workspace, int frame,
+                                      const Eigen::Vector3d& point_W);
+Vector6d frameAccelerationBias(const Model& model, const Workspace& workspace, int frame);
+
+}  // namespace tactus::dynamics

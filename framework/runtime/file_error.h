@@ -1,0 +1,22 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace tactus::runtime {
+
+/// A file that could not be opened, read or written; the message starts with its path.
+class FileError : public std::runtime_error {
+ public:
+  FileError(const std::string& path, const std::string& reason) : std::runtime_error(path + ": " + reason), path(path) {}
+  /// The reason is that of `error_number` (errno).
+  FileError(const std::string& path, const std::string& action, int error_number);
+  std::string path;
+};
+
+/// The whole content; throws FileError.
+std::string readFile(const std::string& path);
+/// Writes the whole content, replacing what was there; throws FileError, on a full disk too.
+void writeFile(const std::string& path, const std::string& content);
+
+}  // namespace tactus::runtime

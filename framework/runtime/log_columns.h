@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "framework/runtime/contact_metrics.h"
+#include "framework/runtime/observer.h"
+
+namespace tactus::runtime {
+
+enum class ColumnSet {
+  standard,                                                        ///< columns="default"
+  all                                                              ///< the joints' positions, velocities and torques too
+};
+
+/// The columns of log.csv: slash-separated names, `time` first, and where each value stands.
+///
+///     time
+///     level/<priority>/{rank,nullity,active,residual}
+///     task/<name>/error, task/<name>/<the task's own>
+///     signal/<name>/<the signal's own>
+///     contact/{contacts,links,mean_N,max_N,undesired_max_N}
+///     controller/{torque_norm,scale,status,fallback,limited}
+///     kkt/{stationarity,primal,complementarity}            when the back end says them
+///     q/<joint>, qd/<joint>, tau/<joint>                   in the set `all`
+///
+/// No column depends on wall-clock time: a log repeats to the byte.
+class LogColumns {
+ public:
+  using Value = std::function<double(const ObservedTick&)>;
+
+  /// Made from the first tick: what a back end tells is known only after it has solved once.
+  /// `contacts` may be null; controller and contacts must outlive this object.
+  LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts);
+
+  const std::vector<std::string>& names() const { return names_; }
+  size_t size() const { return values_.size(); }
+  double value(size_t column, const ObservedTick& tick) const { return values_[column](tick); }
+
+ private:
+  void add(std::string name, Value value);
+  void addLevels(const control::Controller& controller);
+  void addTasksAndSignals(const control::Controller& controller);
+  void addContacts(const ContactMetrics& contacts);
+  void addController(const control::Controller& controller);
+  void addJoints(const control::Controller& controller);
+
+  std::vector<std::string> names_;
+  std::vector<Value> values_;
+};
+
+}  // namespace tactus::runtime

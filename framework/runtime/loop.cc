@@ -1,0 +1,40 @@
+#include "framework/runtime/loop.h"
+
+#include <chrono>
+#include <cmath>
+
+namespace tactus::runtime {
+
+LoopResult runLoop(Plant& plant, control::Controller& controller, double duration,
+                   const std::vector<Observer*>& observers, const std::atomic<bool>& stop) {
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  using Microseconds = std::chrono::duration<double, std::micro>;
+
+  const long ticks = std::lround(duration / controller.period());
+  const auto start = Clock::now();
+  LoopResult result;
+  try {
+    for (; result.ticks < ticks; ++result.ticks) {
+      if (stop.load(std::memory_order_relaxed)) {
+        result.ending = Ending::interrupted;
+        result.message = "interrupted";
+        break;
+      }
+      const control::Sensed& sensed = plant.sense();
+      const auto before = Clock::now();
+      const Eigen::VectorXd& torque = controller.tick(sensed);
+      const double tick_us = Microseconds(Clock::now() - before).count();
+      for (Observer* observer : observers) observer->observe({sensed, controller, torque, tick_us});
+      plant.advance(torque, controller.period());
+    }
+  } catch (const PlantError& error) {
+    result.ending = Ending::plant_error;
+    result.message = error.what();
+  }
+  result.simulated = static_cast<double>(result.ticks) * controller.period();
+  result.wall_clock = Seconds(Clock::now() - start).count();
+  return result;
+}
+
+}  // namespace tactus::runtime

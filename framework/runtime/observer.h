@@ -1,0 +1,22 @@
+#pragma once
+
+#include "framework/control/controller.h"
+
+namespace tactus::runtime {
+
+/// One tick as it happened: what was sensed, what the controller answered.
+struct ObservedTick {
+  const control::Sensed& sensed;
+  const control::Controller& controller;
+  const Eigen::VectorXd& torque;                                   ///< N m, b + g included, held until the next tick
+  double tick_us;                                                  ///< wall-clock time of Controller::tick alone
+};
+
+/// Looks at every tick of a run and changes nothing.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void observe(const ObservedTick& tick) = 0;
+};
+
+}  // namespace tactus::runtime

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <deque>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "framework/control/registry.h"
+#include "framework/runtime/plugin_api.h"
+
+namespace tactus::runtime {
+
+/// A plugin that was not found or was refused; the message says why, lists every path tried and what to do.
+class PluginError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct LoadedPlugin {
+  std::string name;
+  std::string version;
+  std::string licence;
+  std::string path;                                                ///< of the library, symbolic links followed
+  std::vector<std::string> elements;                               ///< that it registered, in its order
+  const PluginDescriptor* descriptor = nullptr;
+};
+
+/// Loads plugin libraries into a registry.
+///
+/// A library is opened with RTLD_NOW | RTLD_LOCAL and stays open: what it made may live as long as the program.
+/// Its descriptor is checked field by field before any C++ type crosses.  Registration is all or nothing: it runs
+/// on a copy of the registry, which replaces the original only when nothing went wrong.
+/// Load before reading a stack: a load moves the registry's rows, and ElementValues point at them.
+class PluginLoader {
+ public:
+  /// `folders` are searched in order for plugins that are asked for by name.
+  PluginLoader(control::Registry& registry, std::vector<std::string> folders);
+
+  /// Loads the library at `path`; a library that is loaded already is not loaded again.
+  const LoadedPlugin& loadFile(const std::string& path);
+  /// Loads NAME.so from the first folder that has it; nothing to do when NAME is loaded already.
+  const LoadedPlugin& loadNamed(const std::string& name);
+  /// Loads every library of a folder in the order of their names, but not those whose name is loaded already:
+  /// a plugin that the user named goes before the shipped one.
+  void loadFolder(const std::string& folder);
+
+  const std::deque<LoadedPlugin>& loaded() const { return loaded_; }
+  const std::vector<std::string>& folders() const { return folders_; }
+
+ private:
+  const LoadedPlugin* find(const std::string& name) const;
+
+  control::Registry& registry_;
+  std::vector<std::string> folders_;
+  std::deque<LoadedPlugin> loaded_;                                ///< a deque: references to its entries stay valid
+};
+
+/// Throws PluginError when the descriptor of the library at `path` does not fit this program; says both values.
+void checkDescriptor(const PluginDescriptor* descriptor, const std::string& path);
+
+}  // namespace tactus::runtime

@@ -1,0 +1,48 @@
+#include "framework/runtime/recorder.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::runtime {
+
+Recorder::Recorder(const RecorderOptions& options)
+    : options_(options),
+      timing_(options.folder + "/timing.csv", {"time", "tick_us"}),
+      touched_(options.folder + "/touched_points.csv",
+               {"time", "link", "x", "y", "z", "normal_x", "normal_y", "normal_z", "force_N"}) {}
+
+void Recorder::observe(const ObservedTick& tick) {
+  if (!columns_) {
+    columns_.emplace(tick.controller, options_.columns, options_.contacts);
+    log_.emplace(options_.folder + "/log.csv", columns_->names());
+    ticks_per_row_ = std::max(1L, std::lround(1 / (options_.row_rate * tick.controller.period())));
+  }
+  if (ticks_ % ticks_per_row_ == 0) {
+    for (size_t column = 0; column < columns_->size(); ++column) *log_ << columns_->value(column, tick);
+    log_->endRow();
+  }
+  ++ticks_;
+  timing_ << tick.sensed.time << tick.tick_us;
+  timing_.endRow();
+  if (options_.touched_points) recordTouchedPoints(tick.controller.model());
+}
+
+void Recorder::recordTouchedPoints(const dynamics::Model& model) {
+  const auto& points = options_.touched_points->points;
+  for (; points_written_ < points.size(); ++points_written_) {
+    const control::TouchedPoint& point = points[points_written_];
+    touched_ << point.time << model.frames()[static_cast<size_t>(point.frame)].name;
+    for (int axis = 0; axis < 3; ++axis) touched_ << point.point_W[axis];
+    for (int axis = 0; axis < 3; ++axis) touched_ << point.normal_W[axis];
+    touched_ << point.force_N;
+    touched_.endRow();
+  }
+}
+
+void Recorder::close() {
+  if (log_) log_->close();
+  timing_.close();
+  touched_.close();
+}
+
+}  // namespace tactus::runtime

@@ -1,0 +1,164 @@
+#include "plugins/null-space/null_space.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/control/torque_scaling.h"
+
+namespace tactus::null_space {
+
+using control::ActiveRow;
+using control::PriorityFactor;
+using control::RowMajorMatrix;
+using control::Status;
+using control::TickProblem;
+using control::TickSolution;
+
+struct NullSpace::Workspace {
+  Workspace(const TickProblem& shape, const NullSpaceOptions& options)
+      : problem(shape),
+        chain(shape.dof, shape.rowCapacity(), static_cast<int>(shape.levels.size()) + 1, options.rank),
+        single(shape.dof, shape.rowCapacity(), 2, options.rank),
+        projection(shape.dof, shape.rowCapacity(), options.inequalities, options.rank, options.release_rows),
+        rows(shape.dof, shape.rowCapacity()),
+        inequalities(shape.dof, shape.rowCapacity()),
+        torque(shape.dof, 1),
+        total(shape.dof) {}
+
+  control::WhitenedProblem problem;
+  PriorityFactor chain;                                            // equality rows of all levels, from the top
+  PriorityFactor single;                                           // of one level alone
+  Projection projection;
+  RowMajorMatrix rows;                                             // equality rows on their way into a factor
+  RowMajorMatrix inequalities;                                     // taken through the factor's stages
+  RowMajorMatrix torque;                                           // the one that is being projected
+  Eigen::VectorXd total;                                           // L⁻¹ τ
+};
+
+NullSpace::NullSpace(const NullSpaceOptions& options)
+    : BackEnd({.strict_levels = options.cascade == Cascade::augmented, .inequalities = true}), options_(options) {}
+
+NullSpace::~NullSpace() = default;
+
+void NullSpace::doPrepare(const TickProblem& shape) { work_ = std::make_unique<Workspace>(shape, options_); }
+
+void NullSpace::doSolve(const TickProblem& problem, TickSolution& solution) {
+  Workspace& work = *work_;
+  solution.status = Status::ok;
+  solution.message.clear();
+  solution.rows_held = solution.rows_released = solution.rank_deficient_levels = 0;
+  solution.iterations = 0;
+  solution.n_contact_forces = 0;
+  solution.scale = 1;
+  for (control::LevelReport& level : solution.levels) {
+    level.active.clear();
+    level.rank = 0;
+    level.nullity = problem.dof;
+    level.residual = 0;
+  }
+  solution.torque.setZero();
+  if (!work.problem.update(problem)) {
+    solution.status = Status::failed;
+    solution.message = "the mass matrix is not positive definite, or a Jacobian or force is not finite";
+    return;
+  }
+  work.total.setZero();
+  if (options_.cascade == Cascade::augmented)
+    augmented(solution);
+  else
+    successive(solution);
+
+  work.problem.toTorque(work.total, solution.torque);
+  if (problem.torque_limits) {
+    const control::TorqueScaling scaling = control::scaleIntoLimits(*problem.torque_limits, solution.torque);
+    solution.scale = scaling.scale;
+    work.total *= scaling.scale;
+    if (!scaling.possible) {
+      solution.status = Status::infeasible;
+      solution.message = "no multiple of the torque lies within the torque limits";
+    }
+  }
+  for (int i = 0; i < work.problem.levelCount(); ++i)
+    solution.levels[i].residual = work.problem.residual(problem, i, work.total);
+}
+
+void NullSpace::augmented(TickSolution& solution) {
+  Workspace& work = *work_;
+  const int levels = work.problem.levelCount();
+  const int all = work.problem.inequalityRowsAbove(levels);
+  auto inequalities = work.inequalities.leftCols(all);
+  inequalities = work.problem.inequalities();
+  work.chain.reset();
+  for (int i = 0; i < levels; ++i) {
+    work.torque = work.problem.ownTorque(i);
+    if (i > 0) project(work.chain, 0, work.problem.inequalityRowsAbove(i), solution);
+    work.total += work.torque;
+
+    auto rows = work.rows.leftCols(work.problem.equalityRows(i));
+    rows = work.problem.equalities(i);
+    work.chain.advance(rows);
+    report(work.chain.hold(rows), i, solution);
+    if (i + 1 < levels) work.chain.advance(i, inequalities);
+  }
+}
+
+void NullSpace::successive(TickSolution& solution) {
+  Workspace& work = *work_;
+  const int levels = work.problem.levelCount();
+  work.chain.reset();
+  for (int i = 0; i < levels; ++i) {
+    auto rows = work.rows.leftCols(work.problem.equalityRows(i));
+    rows = work.problem.equalities(i);
+    work.chain.advance(rows);
+    report(work.chain.hold(rows), i, solution);
+  }
+  for (int i = levels - 1; i >= 0; --i) {
+    if (i + 1 < levels) {
+      auto rows = work.rows.leftCols(work.problem.equalityRows(i));
+      rows = work.problem.equalities(i);
+      work.single.reset();
+      work.single.hold(rows);
+      const int first = work.problem.inequalityRowsAbove(i);
+      const int count = work.problem.inequalityRowsAbove(i + 1) - first;
+      auto inequalities = work.inequalities.middleCols(first, count);
+      inequalities = work.problem.inequalities().middleCols(first, count);
+      work.single.advance(0, inequalities);
+      work.torque = work.total;
+      project(work.single, first, count, solution);
+      work.total = work.torque;
+    }
+    work.total += work.problem.ownTorque(i);
+  }
+}
+
+// Projects work.torque onto what `factor` holds and these inequality rows, and notes which of them came to be held.
+void NullSpace::project(PriorityFactor& factor, int first_inequality, int inequalities, TickSolution& solution) {
+  Workspace& work = *work_;
+  work.projection.apply(factor, work.inequalities.middleCols(first_inequality, inequalities),
+                        work.problem.inequalities().middleCols(first_inequality, inequalities), work.torque);
+  const Projection::Counts& counts = work.projection.counts();
+  if (counts.failed) {
+    solution.status = Status::failed;
+    solution.message = "the inequality rows were not settled in the bounded number of steps; a level was left out";
+  }
+  solution.rows_held += counts.held;
+  solution.rows_released += counts.released;
+  solution.iterations += counts.held + 2 * counts.released;
+  for (int i = 0; i < counts.held; ++i) {
+    const ActiveRow& row =
+        work.problem.origin(work.problem.firstInequality() + first_inequality + work.projection.heldRow(i));
+    std::vector<ActiveRow>& active = solution.levels[row.level].active;
+    const auto same = [&](const ActiveRow& other) { return other.task == row.task && other.row == row.row; };
+    if (std::none_of(active.begin(), active.end(), same)) active.push_back(row);
+  }
+}
+
+void NullSpace::report(const PriorityFactor::Stage& stage, int level, TickSolution& solution) {
+  const int before = level == 0 ? work_->problem.dof() : solution.levels[level - 1].nullity;
+  // A direction that is faded can be seen by two levels; it is granted once.
+  solution.levels[level].rank = std::min(stage.rank, before);
+  solution.levels[level].nullity = before - solution.levels[level].rank;
+  if (stage.deficient) ++solution.rank_deficient_levels;
+}
+
+}  // namespace tactus::null_space

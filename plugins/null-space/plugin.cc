@@ -1,0 +1,71 @@
+#include "framework/runtime/plugin_api.h"
+#include "plugins/null-space/null_space.h"
+
+namespace tactus::null_space {
+namespace {
+
+using control::AttributeRow;
+using control::ElementValues;
+using control::ValueType;
+
+AttributeRow choice(std::string name, std::string fallback, std::vector<std::string> choices, std::string text) {
+  AttributeRow row;
+  row.name = std::move(name);
+  row.type = ValueType::choice;
+  row.default_text = std::move(fallback);
+  row.choices = std::move(choices);
+  row.description = std::move(text);
+  return row;
+}
+
+AttributeRow sigma(std::string name, std::string fallback, std::string text) {
+  AttributeRow row;
+  row.name = std::move(name);
+  row.type = ValueType::real;
+  row.unit = "1";
+  row.default_text = std::move(fallback);
+  row.lower = 0;
+  row.lower_open = true;
+  row.upper = 1;
+  row.description = std::move(text);
+  return row;
+}
+
+std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
+  NullSpaceOptions options;
+  options.cascade = values.text("projection") == "successive" ? Cascade::successive : Cascade::augmented;
+  options.inequalities = values.text("inequalities") == "one-pass" ? Inequalities::one_pass : Inequalities::exact;
+  options.rank = {values.real("rank-tolerance"), values.real("fade")};
+  if (options.rank.fade < options.rank.rank_tolerance)
+    throw control::ElementError("fade", "fade must not be below rank-tolerance");
+  return std::make_unique<NullSpace>(options);
+}
+
+void registerElements(control::Registry& registry) {
+  control::ElementRow row;
+  row.name = "null-space";
+  row.kind = control::ElementKind::back_end;
+  row.description =
+      "A cascade of task torques, each projected so that it does not disturb the levels above. Torque limits are met "
+      "by scaling the whole torque.";
+  row.source = "4.2.5-4.2.12, Algorithms 3 and 4";
+  row.attributes = {
+      choice("projection", "augmented", {"successive", "augmented"},
+             "augmented: each level's torque is projected alone onto the rows of all levels above, strict for all "
+             "levels. successive: Algorithm 4, from the lowest level up, strict for level 1 only."),
+      choice("inequalities", "exact", {"one-pass", "exact"},
+             "exact: the nearest torque in the inverse-inertia metric that keeps every row. one-pass: Algorithm 3, "
+             "which can leave rows violated that the unprojected torque kept."),
+      sigma("rank-tolerance", "1e-8",
+            "Singular value, of unit rows in the inverse-inertia metric projected into what higher levels left, up to "
+            "which a direction is not held."),
+      sigma("fade", "1e-6",
+            "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance."),
+  };
+  registry.addBackEnd(std::move(row), make);
+}
+
+}  // namespace
+}  // namespace tactus::null_space
+
+TACTUS_PLUGIN("null-space", TACTUS_VERSION, "BSD-3-Clause", tactus::null_space::registerElements)

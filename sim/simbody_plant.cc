@@ -1,0 +1,232 @@
+#include "sim/simbody_plant.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/joint_resistance.h"
+#include "sim/simbody_robot.h"
+
+namespace tactus::sim {
+namespace {
+
+std::string print(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+const char* unitOf(description::JointType type) { return type == description::JointType::prismatic ? "m" : "rad"; }
+
+constexpr const char* usual_causes =
+    "Usual causes: damping gains too high for the joint's inertia at this control rate (keep d·dt/I below 0.5), a mass "
+    "matrix of the controller that lacks the rotor inertia, delay, or a start inside an object.";
+
+}  // namespace
+
+class SimbodyPlant::Implementation {
+ public:
+  Implementation(const description::Robot& robot, const description::Scene& scene, const Eigen::VectorXd& start_q,
+                 const PlantOptions& options)
+      : options_(options),
+        names_(jointNames(robot)),
+        robot_(robot, scene.gravity),
+        state_(robot_.defaultState()),
+        contact_(movingFeatures(robot), scene, robot_.matter().getNumBodies(), options.contact),
+        motions_(robot_.matter().getNumBodies()),
+        q_(checkedStart(robot, start_q)),
+        qd_(Eigen::VectorXd::Zero(robot_.dof())),
+        resistance_(robot, effectiveInertia(), options.step),
+        joint_torque_(robot_.dof()),
+        mobility_forces_(robot_.dof(), 0.0),
+        accelerations_(robot_.dof(), 0.0) {
+    sensed_.contacts.reserve(contact_.capacity());
+    try {
+      realize();
+    } catch (const std::exception& error) {
+      throw runtime::PlantError(std::string("the start cannot be simulated: ") + error.what());
+    }
+    contact_.evaluate(motions_, options_.step);
+    fillSensed();
+  }
+
+  const control::Sensed& sense() const { return sensed_; }
+
+  void advance(const Eigen::VectorXd& torque, double duration) {
+    const double wanted = duration / options_.step;
+    const double count = std::round(wanted);
+    if (!(count >= 0) || std::abs(wanted - count) > 1e-6)
+      throw runtime::PlantError("cannot advance by " + print(duration) + " s: not a whole number of steps of " +
+                                print(options_.step) + " s");
+    checkTorque(torque);
+    try {
+      for (std::int64_t i = 0; i < static_cast<std::int64_t>(count); ++i) step(torque);
+    } catch (...) {
+      fillSensed();
+      throw;
+    }
+    fillSensed();
+  }
+
+ private:
+  struct JointName {
+    std::string name;
+    const char* unit;
+  };
+
+  static std::vector<JointName> jointNames(const description::Robot& robot) {
+    std::vector<JointName> names;
+    for (int j : robot.movingJoints()) names.push_back({robot.joints[j].name, unitOf(robot.joints[j].type)});
+    return names;
+  }
+
+  /// The features of links that can move, each in the frame of its mobilized body.  What is fixed to the world
+  /// cannot be pushed: it touches nothing.
+  std::vector<LinkFeature> movingFeatures(const description::Robot& robot) const {
+    std::vector<LinkFeature> features = linkFeatures(robot);
+    for (LinkFeature& feature : features) {
+      const Eigen::Isometry3d& X_BL = robot_.poseInCarrier(feature.link);
+      feature.body = robot_.carrier(feature.link).getMobilizedBodyIndex();
+      feature.from = X_BL * feature.from;
+      feature.to = X_BL * feature.to;
+    }
+    std::erase_if(features, [](const LinkFeature& feature) { return feature.body == 0; });
+    return features;
+  }
+
+  Eigen::VectorXd checkedStart(const description::Robot& robot, const Eigen::VectorXd& start_q) const {
+    constexpr double rounding = 1e-9;
+    if (start_q.size() != robot_.dof())
+      throw runtime::PlantError("the start has " + std::to_string(start_q.size()) + " values, but robot '" + robot.name +
+                                "' has " + std::to_string(robot_.dof()) + " moving joints");
+    const std::vector<int> moving = robot.movingJoints();
+    for (int i = 0; i < robot_.dof(); ++i) {
+      const description::Joint& joint = robot.joints[moving[i]];
+      if (!std::isfinite(start_q[i]))
+        throw runtime::PlantError("the start of joint '" + joint.name + "' is " + print(start_q[i]));
+      if (start_q[i] < joint.lower - rounding || start_q[i] > joint.upper + rounding)
+        throw runtime::PlantError("the start of joint '" + joint.name + "' is " + print(start_q[i]) + " " +
+                                  names_[i].unit + ", outside its range " + print(joint.lower) + " to " +
+                                  print(joint.upper));
+    }
+    return start_q;
+  }
+
+  void checkTorque(const Eigen::VectorXd& torque) const {
+    if (torque.size() != robot_.dof())
+      throw runtime::PlantError("got " + std::to_string(torque.size()) + " torques for " +
+                                std::to_string(robot_.dof()) + " moving joints");
+    for (int i = 0; i < robot_.dof(); ++i)
+      if (!std::isfinite(torque[i]))
+        throw runtime::PlantError("the torque of joint '" + names_[i].name + "' is " + print(torque[i]) + " at t = " +
+                                  print(time()) + " s: the controller has lost its numbers, the plant stays where it was");
+  }
+
+  /// 1/(M⁻¹)_ii at the start.
+  Eigen::VectorXd effectiveInertia() {
+    realizePosition();
+    SimTK::Matrix inverse;
+    robot_.matter().calcMInv(state_, inverse);
+    Eigen::VectorXd inertia(robot_.dof());
+    for (int i = 0; i < robot_.dof(); ++i) inertia[i] = 1 / inverse(i, i);
+    return inertia;
+  }
+
+  double time() const { return static_cast<double>(steps_) * options_.step; }
+
+  void realizePosition() {
+    toEigen(state_.updQ()) = q_;
+    robot_.system().realize(state_, SimTK::Stage::Position);
+  }
+
+  /// Brings Simbody and the body motions to (q_, qd_).
+  void realize() {
+    toEigen(state_.updQ()) = q_;
+    toEigen(state_.updU()) = qd_;
+    robot_.system().realize(state_, SimTK::Stage::Dynamics);
+    for (SimTK::MobilizedBodyIndex b(1); b < robot_.matter().getNumBodies(); ++b) {
+      const SimTK::MobilizedBody& body = robot_.matter().getMobilizedBody(b);
+      const SimTK::Transform& X_WB = body.getBodyTransform(state_);
+      const SimTK::SpatialVec& V_WB = body.getBodyVelocity(state_);
+      motions_[b] = {toEigen(X_WB.R()), toEigen(X_WB.p()), toEigen(V_WB[0]), toEigen(V_WB[1])};
+    }
+  }
+
+  void step(const Eigen::VectorXd& torque) {
+    joint_torque_ = torque;
+    resistance_.add(q_, qd_, joint_torque_);
+    toEigen(mobility_forces_) = joint_torque_;
+    robot_.gravityForces(state_, body_forces_);
+    for (SimTK::MobilizedBodyIndex b(1); b < body_forces_.size(); ++b) {
+      const BodyWrench& wrench = contact_.wrenches()[b];
+      body_forces_[b] += SimTK::SpatialVec(toSimTK(wrench.torque_W), toSimTK(wrench.force_W));
+    }
+
+    last_q_ = q_;
+    last_qd_ = qd_;
+    try {
+      robot_.matter().calcAccelerationIgnoringConstraints(state_, mobility_forces_, body_forces_, accelerations_,
+                                                          body_accelerations_);
+      qd_ += options_.step * toEigen(accelerations_);
+      q_ += options_.step * qd_;
+      checkSpeed();
+      realize();
+    } catch (const std::exception& error) {
+      q_ = last_q_;
+      qd_ = last_qd_;
+      realize();
+      if (dynamic_cast<const runtime::PlantError*>(&error)) throw;
+      throw runtime::PlantError("Simbody failed at t = " + print(time()) + " s: " + error.what() + ". " + usual_causes);
+    }
+    ++steps_;
+    contact_.commit();
+    resistance_.commit();
+    contact_.evaluate(motions_, options_.step);
+  }
+
+  void checkSpeed() const {
+    for (int i = 0; i < robot_.dof(); ++i) {
+      if (std::abs(qd_[i]) <= options_.velocity_limit) continue;   // false for NaN, too
+      const bool finite = std::isfinite(qd_[i]);
+      throw runtime::PlantError("joint '" + names_[i].name + (finite ? "' runs away: its speed reaches " : "' is lost: its speed is ") +
+                                print(qd_[i]) + " " + names_[i].unit + "/s at t = " + print(time() + options_.step) +
+                                " s (limit " + print(options_.velocity_limit) + "). " + usual_causes);
+    }
+  }
+
+  void fillSensed() {
+    sensed_.time = time();
+    sensed_.q = q_;
+    sensed_.qd = qd_;
+    contact_.read(sensed_.contacts);
+  }
+
+  PlantOptions options_;
+  std::vector<JointName> names_;
+  SimbodyRobot robot_;
+  SimTK::State state_;
+  ContactForce contact_;
+  std::vector<BodyMotion> motions_;                                // by mobilized body; 0 is Ground, which rests
+  Eigen::VectorXd q_, qd_;
+  JointResistance resistance_;
+  Eigen::VectorXd joint_torque_, last_q_, last_qd_;
+  SimTK::Vector mobility_forces_, accelerations_;
+  SimTK::Vector_<SimTK::SpatialVec> body_forces_, body_accelerations_;
+  std::int64_t steps_ = 0;
+  control::Sensed sensed_;
+};
+
+SimbodyPlant::SimbodyPlant(const description::Robot& robot, const description::Scene& scene,
+                           const Eigen::VectorXd& start_q, const PlantOptions& options)
+    : implementation_(std::make_unique<Implementation>(robot, scene, start_q, options)) {}
+
+SimbodyPlant::~SimbodyPlant() = default;
+
+const control::Sensed& SimbodyPlant::sense() const { return implementation_->sense(); }
+
+void SimbodyPlant::advance(const Eigen::VectorXd& torque, double duration) {
+  implementation_->advance(torque, duration);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "framework/description/robot.h"
+#include "sim/simtk_eigen.h"
+
+namespace tactus::sim {
+
+/// A description::Robot as a Simbody tree: one mobilized body per moving joint (Pin or Slider), fixed links merged into
+/// the body that carries them, rotor inertia added as the thin disk that robot.h defines.  q and u are in the order of
+/// description::Robot::movingJoints().  Gravity is a set of body forces that one asks for, not a force subsystem, which
+/// would cost a quarter of a step; joint damping, friction and stops are not part of this class.
+/// Only the sources of `sim` and tests include this header: it brings Simbody with it.
+class SimbodyRobot {
+ public:
+  /// Throws runtime::PlantError, naming the link, for a moving body without mass or one that Simbody refuses.
+  SimbodyRobot(const description::Robot& robot, const Eigen::Vector3d& gravity_W);
+  SimbodyRobot(const SimbodyRobot&) = delete;
+  SimbodyRobot& operator=(const SimbodyRobot&) = delete;
+
+  int dof() const { return static_cast<int>(bodies_.size()); }
+  const SimTK::MultibodySystem& system() const { return system_; }
+  const SimTK::SimbodyMatterSubsystem& matter() const { return matter_; }
+  /// A state at q = 0, u = 0, realized to Model.
+  SimTK::State defaultState() const { return system_.getDefaultState(); }
+
+  /// The mobilized body that carries a link (index into description::Robot::links), Ground for a fixed one.
+  const SimTK::MobilizedBody& carrier(int link) const { return matter_.getMobilizedBody(carriers_[link].body); }
+  /// The link frame in its carrier's frame.  A body frame has Simbody's joint axis where the joint's is.
+  const Eigen::Isometry3d& poseInCarrier(int link) const { return carriers_[link].pose; }
+
+  /// Sets `forces` to the weight of every body; the state is realized to Position.
+  void gravityForces(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& forces) const;
+
+ private:
+  struct Carrier {
+    SimTK::MobilizedBodyIndex body;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  };
+  struct Weight {
+    SimTK::Vec3 centre_of_mass_B;
+    SimTK::Vec3 force_W;
+  };
+  void build(const description::Robot& robot, const Eigen::Vector3d& gravity_W);
+
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_;
+  std::vector<SimTK::MobilizedBodyIndex> bodies_;                  // by joint in q
+  std::vector<Weight> weights_;                                    // by joint in q
+  std::vector<Carrier> carriers_;                                  // by link
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,71 @@
+#include "tasks/contact_force.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::tasks {
+
+using namespace control;
+
+void ContactForce::registerIn(Registry& registry) {
+  ElementRow row;
+  row.name = "contact-force";
+  row.kind = ElementKind::task;
+  row.description = "Keeps a light normal force at each contact of a set.";
+  row.source = "thesis 4.3.2";
+  row.attributes = {
+      {.name = "on", .type = ValueType::port, .required = true, .description = "The contacts, e.g. touch.held.",
+       .port_type = "contact-set"},
+      {.name = "force", .type = ValueType::real, .unit = "N", .default_text = "0.5",
+       .description = "Normal force f_n wanted at each contact.", .lower = 0},
+      {.name = "feedback", .type = ValueType::real, .unit = "1", .default_text = "0",
+       .description = "Gain k_f of the one-sided feedback; 0 is the thesis's open loop.", .lower = 0},
+      {.name = "feedback-threshold", .type = ValueType::real, .unit = "N", .default_text = "1",
+       .description = "Measured force above which the feedback backs off.", .lower = 0},
+      {.name = "feedback-filter", .type = ValueType::real, .unit = "s", .default_text = "0.01",
+       .description = "Time constant of the filter on the measured excess.", .lower = 0},
+      {.name = "min-force", .type = ValueType::real, .unit = "N", .default_text = "-3",
+       .description = "The feedback takes the reference no lower than this."},
+  };
+  registry.addTask(row, [](const BuildContext& context) { return std::make_unique<ContactForce>(context); });
+}
+
+ContactForce::ContactForce(const BuildContext& context)
+    : Task(Relation::equality, context.port<ContactSet>("on").capacity, true),
+      contacts_(context.port<ContactSet>("on")),
+      force_(context.values.real("force")),
+      feedback_(context.values.real("feedback")),
+      threshold_(context.values.real("feedback-threshold")),
+      filter_(context.values.real("feedback-filter")),
+      min_force_(context.values.real("min-force")),
+      excess_(context.model.frames().size(), 0.0),
+      seen_(context.model.frames().size(), 0) {
+  if (min_force_ > force_) throw ElementError("min-force", "min-force must not be greater than force");
+}
+
+void ContactForce::doUpdate(const Tick& tick, TickTask& rows) {
+  const double blend = tick.dt / (filter_ + tick.dt);
+  std::fill(seen_.begin(), seen_.end(), 0);
+  rows.rows = static_cast<int>(contacts_.contacts.size());
+  lowest_reference_ = force_;
+  error_ = 0;
+  for (int i = 0; i < rows.rows; ++i) {
+    const Contact& contact = contacts_.contacts[i];
+    seen_[contact.frame] = 1;
+    double& excess = excess_[contact.frame];
+    excess += blend * (std::max(contact.force_N - threshold_, 0.0) - excess);
+    tick.robot.directionJacobian(contact.frame, contact.point_W, contact.normal_W, rows.jacobian.row(i));
+    rows.force[i] = std::max(force_ - feedback_ * excess, min_force_);
+    lowest_reference_ = std::min(lowest_reference_, rows.force[i]);
+    error_ = std::max(error_, std::abs(contact.force_N - force_));
+  }
+  for (std::size_t frame = 0; frame < excess_.size(); ++frame) {
+    if (!seen_[frame]) excess_[frame] = 0;
+  }
+}
+
+void ContactForce::columns(std::vector<LogColumn>& columns) const {
+  columns.push_back({"lowest_reference_N", &lowest_reference_});
+}
+
+}  // namespace tactus::tasks

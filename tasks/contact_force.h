@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/control/registry.h"
+
+namespace tactus::tasks {
+
+/// `contact-force`: keeps a light normal force at every contact of a set (thesis 4.3.2).
+///
+/// One row a contact, J = nᵀJ_c with n out of the robot, equality: lower levels may not disturb it.
+/// The reference is f_n, less a one-sided feedback where the measured force f is too high:
+///   F = max(f_n − k_f · LP(f − f_t)₊, F_min),  LP a first-order filter, f_t the threshold.
+/// It frees a finger that is jammed between an edge and its own stop, which the open-loop law keeps pressing.
+class ContactForce final : public control::Task {
+ public:
+  explicit ContactForce(const control::BuildContext& context);
+  static void registerIn(control::Registry& registry);
+
+  void columns(std::vector<control::LogColumn>& columns) const override;
+
+ private:
+  void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+
+  const control::ContactSet& contacts_;
+  double force_, feedback_, threshold_, filter_, min_force_;
+  std::vector<double> excess_;                                     ///< filtered (f − f_t)₊ by frame, N
+  std::vector<char> seen_;                                         ///< by frame: in contact this tick
+  double lowest_reference_ = 0;
+};
+
+}  // namespace tactus::tasks

@@ -1,0 +1,59 @@
+#include "tasks/contact_limit.h"
+
+#include <algorithm>
+
+namespace tactus::tasks {
+
+using namespace control;
+
+void ContactLimit::registerIn(Registry& registry) {
+  ElementRow row;
+  row.name = "contact-limit";
+  row.kind = ElementKind::task;
+  row.description = "Undesired contacts may break but are not pressed harder; above max-force they are backed off.";
+  row.source = "thesis 4.2.9";
+  row.attributes = {
+      {.name = "on", .type = ValueType::port, .required = true, .description = "The contacts, e.g. touch.undesired.",
+       .port_type = "contact-set"},
+      {.name = "max-force", .type = ValueType::real, .unit = "N",
+       .description = "Measured force above which the contact is backed off; not given: never.", .lower = 0},
+      {.name = "feedback", .type = ValueType::real, .unit = "1", .default_text = "2",
+       .description = "Gain of the backing off.", .lower = 0},
+      {.name = "feedback-filter", .type = ValueType::real, .unit = "s", .default_text = "0.01",
+       .description = "Time constant of the filter on the measured excess.", .lower = 0},
+      {.name = "back-off-limit", .type = ValueType::real, .unit = "N", .default_text = "5",
+       .description = "Greatest force of the backing off.", .lower = 0},
+  };
+  registry.addTask(row, [](const BuildContext& context) { return std::make_unique<ContactLimit>(context); });
+}
+
+ContactLimit::ContactLimit(const BuildContext& context)
+    : Task(Relation::inequality, context.port<ContactSet>("on").capacity),
+      contacts_(context.port<ContactSet>("on")),
+      max_force_(context.values.has("max-force") ? context.values.real("max-force") : description::infinity),
+      feedback_(context.values.real("feedback")),
+      filter_(context.values.real("feedback-filter")),
+      back_off_limit_(context.values.real("back-off-limit")),
+      excess_(context.model.frames().size(), 0.0),
+      seen_(context.model.frames().size(), 0) {}
+
+void ContactLimit::doUpdate(const Tick& tick, TickTask& rows) {
+  const double blend = tick.dt / (filter_ + tick.dt);
+  std::fill(seen_.begin(), seen_.end(), 0);
+  rows.rows = static_cast<int>(contacts_.contacts.size());
+  error_ = 0;
+  for (int i = 0; i < rows.rows; ++i) {
+    const Contact& contact = contacts_.contacts[i];
+    seen_[contact.frame] = 1;
+    double& excess = excess_[contact.frame];
+    excess += blend * (std::max(contact.force_N - max_force_, 0.0) - excess);
+    tick.robot.directionJacobian(contact.frame, contact.point_W, contact.normal_W, rows.jacobian.row(i));
+    rows.force[i] = -std::min(feedback_ * excess, back_off_limit_);
+    error_ = std::max(error_, contact.force_N);
+  }
+  for (std::size_t frame = 0; frame < excess_.size(); ++frame) {
+    if (!seen_[frame]) excess_[frame] = 0;
+  }
+}
+
+}  // namespace tactus::tasks

@@ -1,0 +1,218 @@
+#include "tasks/follow_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tasks/orientation_error.h"
+
+namespace tactus::tasks {
+
+using namespace control;
+
+void FollowSurface::registerIn(Registry& registry) {
+  ElementRow row;
+  row.name = "follow-surface";
+  row.kind = ElementKind::task;
+  row.description = "Moves a hand along an unknown surface through key positions, turned to the median contact normal.";
+  row.source = "thesis A.1";
+  row.attributes = {
+      {.name = "frame", .type = ValueType::link, .required = true, .description = "The link that follows."},
+      {.name = "along", .type = ValueType::points, .unit = "m", .required = true,
+       .description = "Key positions, world axes, in order; they need not lie on the surface.", .count = 3},
+      {.name = "on", .type = ValueType::port, .default_text = "touch.held",
+       .description = "Contacts whose normals show the surface.", .port_type = "contact-set"},
+      {.name = "normal-axis", .type = ValueType::reals, .unit = "1", .default_text = "1 0 0",
+       .description = "Axis of the frame that faces the surface.", .count = 3},
+      {.name = "forward-axis", .type = ValueType::reals, .unit = "1", .default_text = "0 0 1",
+       .description = "Axis of the frame from palm to fingers, perpendicular to normal-axis.", .count = 3},
+      {.name = "approach", .type = ValueType::reals, .unit = "1", .default_text = "0 0 -1",
+       .description = "Direction of the first approach, world axes.", .count = 3},
+      {.name = "approach-speed", .type = ValueType::real, .unit = "m/s", .default_text = "0.02",
+       .description = "Speed along the last normal while nothing touches.", .lower = 0},
+      {.name = "reach", .type = ValueType::real, .unit = "m", .default_text = "0.03",
+       .description = "G: how far ahead the reference runs.", .lower = 0, .lower_open = true},
+      {.name = "near", .type = ValueType::real, .unit = "m", .default_text = "0.03",
+       .description = "d: nearer than this to the key, the reference slows down.", .lower = 0, .lower_open = true},
+      {.name = "key-threshold", .type = ValueType::real, .unit = "m", .default_text = "0.015",
+       .description = "Tangential distance at which a key counts as passed.", .lower = 0, .lower_open = true},
+      {.name = "stiffness", .type = ValueType::real, .unit = "N/m", .default_text = "300",
+       .description = "k_p, within the surface.", .lower = 0},
+      {.name = "damping", .type = ValueType::real, .unit = "N s/m", .default_text = "300",
+       .description = "d_p, within the surface.", .lower = 0},
+      {.name = "normal-damping", .type = ValueType::real, .unit = "N s/m", .default_text = "100",
+       .description = "d_p along the normal axis.", .lower = 0},
+      {.name = "rotation-stiffness", .type = ValueType::real, .unit = "N m/rad", .default_text = "10",
+       .description = "k_r, about the two axes within the surface.", .lower = 0},
+      {.name = "yaw-stiffness", .type = ValueType::real, .unit = "N m/rad", .default_text = "0",
+       .description = "Stiffness about the normal axis towards `heading` (thesis: 0).", .lower = 0},
+      {.name = "rotation-damping", .type = ValueType::real, .unit = "N m s/rad", .default_text = "3",
+       .description = "d_r.", .lower = 0},
+      {.name = "heading", .type = ValueType::reals, .unit = "1",
+       .description = "Direction that the forward axis keeps, world axes; not given: it turns freely.", .count = 3},
+      {.name = "tilt", .type = ValueType::real, .unit = "rad", .default_text = "0",
+       .description = "Lean of the forward axis into the surface.", .lower = -1.5, .upper = 1.5},
+      {.name = "normal-filter", .type = ValueType::real, .unit = "s", .default_text = "0.1",
+       .description = "Time constant of the filter on the median normal.", .lower = 0},
+      {.name = "stall-time", .type = ValueType::real, .unit = "s", .default_text = "2",
+       .description = "A key is given up after so long without progress.", .lower = 0, .lower_open = true},
+      {.name = "stall-progress", .type = ValueType::real, .unit = "m", .default_text = "0.005",
+       .description = "What counts as progress towards a key.", .lower = 0},
+  };
+  registry.addTask(row, [](const BuildContext& context) { return std::make_unique<FollowSurface>(context); });
+}
+
+namespace {
+
+Eigen::Vector3d direction(const BuildContext& context, const std::string& attribute) {
+  const Eigen::Vector3d v = context.values.vector3(attribute);
+  if (v.norm() < 1e-9) throw ElementError(attribute, attribute + " must not be a zero vector");
+  return v.normalized();
+}
+
+}  // namespace
+
+FollowSurface::FollowSurface(const BuildContext& context)
+    : Task(Relation::equality, 6),
+      contacts_(context.port<ContactSet>("on")),
+      frame_(context.frame("frame")),
+      reach_(context.values.real("reach")),
+      near_(context.values.real("near")),
+      key_threshold_(context.values.real("key-threshold")),
+      normal_filter_(context.values.real("normal-filter")),
+      tilt_(context.values.real("tilt")),
+      stiffness_(context.values.real("stiffness")),
+      damping_(context.values.real("damping")),
+      damping_normal_(context.values.real("normal-damping")),
+      turn_stiffness_(context.values.real("rotation-stiffness")),
+      yaw_stiffness_(context.values.real("yaw-stiffness")),
+      turn_damping_(context.values.real("rotation-damping")),
+      approach_speed_(context.values.real("approach-speed")),
+      stall_time_(context.values.real("stall-time")),
+      stall_progress_(context.values.real("stall-progress")),
+      has_heading_(context.values.has("heading")),
+      heading_W_(has_heading_ ? direction(context, "heading") : Eigen::Vector3d::Zero()),
+      normal_W_(direction(context, "approach")) {
+  const std::vector<double>& along = context.values.numbers("along");
+  for (std::size_t i = 0; i + 2 < along.size(); i += 3) keys_W_.emplace_back(along[i], along[i + 1], along[i + 2]);
+  if (keys_W_.empty()) throw ElementError("along", "along needs at least one key position 'x y z'");
+  const Eigen::Vector3d normal_axis = direction(context, "normal-axis");
+  const Eigen::Vector3d forward_axis = direction(context, "forward-axis");
+  if (std::abs(normal_axis.dot(forward_axis)) > 1e-6) {
+    throw ElementError("forward-axis", "forward-axis must be perpendicular to normal-axis");
+  }
+  R_EH_ << normal_axis, forward_axis, normal_axis.cross(forward_axis);
+  if (yaw_stiffness_ > 0 && !has_heading_) throw ElementError("yaw-stiffness", "yaw-stiffness needs a heading");
+}
+
+const Eigen::Vector3d& FollowSurface::key() const {
+  return keys_W_[std::min<std::size_t>(key_index_, keys_W_.size() - 1)];
+}
+
+void FollowSurface::updateNormal(double dt) {
+  const std::vector<Contact>& contacts = contacts_.contacts;
+  if (contacts.empty()) return;
+  std::size_t first = 0, second = 0;
+  double least_cosine = 2;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    for (std::size_t j = i + 1; j < contacts.size(); ++j) {
+      const double cosine = contacts[i].normal_W.dot(contacts[j].normal_W);
+      if (cosine < least_cosine) {
+        least_cosine = cosine;
+        first = i;
+        second = j;
+      }
+    }
+  }
+  Eigen::Vector3d median = contacts[first].normal_W + contacts[second].normal_W;
+  median = median.norm() > 1e-6 ? median.normalized() : contacts[first].normal_W;
+  const Eigen::Vector3d blended = normal_W_ + dt / (normal_filter_ + dt) * (median - normal_W_);
+  if (blended.norm() > 1e-6) normal_W_ = blended.normalized();
+}
+
+Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) const {
+  const Eigen::Vector3d ahead = has_heading_ && yaw_stiffness_ > 0 ? heading_W_ : Eigen::Vector3d(R_WH.col(1));
+  Eigen::Vector3d forward = ahead - ahead.dot(normal_W_) * normal_W_;
+  if (forward.norm() < 1e-6) {
+    // The hand points along the normal: any direction within the surface will do; keep the third axis.
+    forward = R_WH.col(2).cross(normal_W_);
+  }
+  forward.normalize();
+  const Eigen::Vector3d leaned_forward = std::cos(tilt_) * forward + std::sin(tilt_) * normal_W_;
+  const Eigen::Vector3d leaned_normal = std::cos(tilt_) * normal_W_ - std::sin(tilt_) * forward;
+  Eigen::Matrix3d R_WR;
+  R_WR << leaned_normal, leaned_forward, leaned_normal.cross(leaned_forward);
+  return R_WR;
+}
+
+void FollowSurface::advanceKey(double time, double tangential_distance) {
+  if (key_index_ >= static_cast<int>(keys_W_.size())) return;
+  if (!key_started_) {
+    key_started_ = true;
+    nearest_ = tangential_distance;
+    progress_time_ = time;
+  }
+  if (tangential_distance < nearest_ - stall_progress_) {
+    nearest_ = tangential_distance;
+    progress_time_ = time;
+  }
+  const bool passed = !contacts_.contacts.empty() && tangential_distance < key_threshold_;
+  const bool stalled = !passed && time - progress_time_ > stall_time_ && !contacts_.contacts.empty();
+  if (passed) ++keys_passed_;
+  if (stalled) ++keys_given_up_;
+  if (passed || stalled) {
+    ++key_index_;
+    key_started_ = false;
+    last_key_time_ = time;
+  }
+}
+
+void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
+  updateNormal(tick.dt);
+  const Eigen::Isometry3d X_WE = tick.robot.framePose(frame_);
+  const Eigen::Vector3d p_W = X_WE.translation();
+  const Eigen::Matrix3d R_WH = X_WE.linear() * R_EH_;
+  const dynamics::Vector6d velocity = tick.robot.frameVelocity(frame_);
+
+  // Tangential way to the key; p_r − p by A.1.6.
+  Eigen::Vector3d way = key() - p_W;
+  way -= way.dot(normal_W_) * normal_W_;
+  distance_ = way.norm();
+  const Eigen::Vector3d x_e = distance_ > near_ ? Eigen::Vector3d(way * (reach_ / distance_))
+                                                : Eigen::Vector3d(way * (reach_ / near_));
+  advanceKey(tick.time, distance_);
+
+  const Eigen::Vector3d axis_W = R_WH.col(0);
+  const auto acrossAxis = [&](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - axis_W * axis_W.dot(v)); };
+
+  Eigen::Vector3d force = stiffness_ * acrossAxis(x_e);
+  const Eigen::Vector3d v_W = velocity.head<3>();
+  force -= damping_ * acrossAxis(v_W);
+  const double wanted_normal_speed = contacts_.contacts.empty() ? approach_speed_ : 0;
+  force += damping_normal_ * (wanted_normal_speed - axis_W.dot(v_W)) * axis_W;
+
+  const Eigen::Vector3d turn = orientationError(R_WH, wantedOrientation(R_WH));
+  const Eigen::Vector3d moment = turn_stiffness_ * acrossAxis(turn) + yaw_stiffness_ * axis_W.dot(turn) * axis_W -
+                                 turn_damping_ * velocity.tail<3>();
+
+  rows.rows = 6;
+  tick.robot.frameJacobian(frame_, rows.jacobian.topRows<6>());
+  rows.force.head<3>() = force;
+  rows.force.segment<3>(3) = moment;
+  error_ = distance_;
+  key_number_ = key_index_;
+}
+
+void FollowSurface::columns(std::vector<LogColumn>& columns) const {
+  columns.push_back({"key", &key_number_});
+  columns.push_back({"keys_passed", &keys_passed_});
+  columns.push_back({"keys_given_up", &keys_given_up_});
+}
+
+void FollowSurface::metrics(std::vector<Metric>& metrics) const {
+  metrics.push_back({"keys_passed", keys_passed_});
+  metrics.push_back({"keys_given_up", keys_given_up_});
+  metrics.push_back({"keys_total", static_cast<double>(keys_W_.size())});
+  metrics.push_back({"last_key_time_s", last_key_time_});
+}
+
+}  // namespace tactus::tasks

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/control/registry.h"
+
+namespace tactus::tasks {
+
+/// `follow-surface`: moves a hand along an unknown surface from key position to key position (thesis, appendix A.1).
+///
+/// Each tick, from the contacts alone:
+/// 1. the median normal n_m, the normalised mean of the two most different contact normals (A.1.1), low-passed;
+/// 2. the wanted orientation: the frame's `normal-axis` on n_m, its `forward-axis` on its own projection onto the
+///    plane ⟂ n_m (A.1.2, A.1.3), leaned by `tilt` so that the forward end goes into the surface;
+/// 3. the wanted position p_r: towards the key p_f, within the plane ⟂ n_m, a step `reach` ahead, less when nearer
+///    than `near` (A.1.4–A.1.6);
+/// 4. the wrench F = K x_e − D ẋ_e (A.1.7–A.1.11) with no stiffness along the normal axis, on the frame Jacobian J_e
+///    (6 rows, linear first, world axes).
+/// Without contact the frame approaches along the last normal at `approach-speed`.
+///
+/// A key counts as passed when its tangential distance falls below `key-threshold` while in contact.  It is given up
+/// when `stall-time` goes by without `stall-progress` towards it: a finger caught at an edge must not hold the sweep.
+class FollowSurface final : public control::Task {
+ public:
+  explicit FollowSurface(const control::BuildContext& context);
+  static void registerIn(control::Registry& registry);
+
+  void columns(std::vector<control::LogColumn>& columns) const override;
+  void metrics(std::vector<control::Metric>& metrics) const override;
+
+ private:
+  void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void updateNormal(double dt);
+  Eigen::Matrix3d wantedOrientation(const Eigen::Matrix3d& R_WH) const;
+  void advanceKey(double time, double tangential_distance);
+  const Eigen::Vector3d& key() const;
+
+  const control::ContactSet& contacts_;
+  int frame_;
+  std::vector<Eigen::Vector3d> keys_W_;
+  Eigen::Matrix3d R_EH_;                                           ///< columns: normal axis, forward axis, their cross product
+  double reach_, near_, key_threshold_, normal_filter_, tilt_;
+  double stiffness_, damping_, damping_normal_, turn_stiffness_, yaw_stiffness_, turn_damping_;
+  double approach_speed_, stall_time_, stall_progress_;
+  bool has_heading_;
+  Eigen::Vector3d heading_W_;
+
+  Eigen::Vector3d normal_W_;                                       ///< n_m, filtered
+  int key_index_ = 0;
+  double nearest_ = 0;                                             ///< least tangential distance to the key so far, m
+  double progress_time_ = 0;                                       ///< s, when it last fell by stall-progress
+  bool key_started_ = false;
+  double keys_passed_ = 0, keys_given_up_ = 0, key_number_ = 0;
+  double last_key_time_ = 0;
+  double distance_ = 0;
+};
+
+}  // namespace tactus::tasks

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/control/registry.h"
+
+namespace tactus::tasks {
+
+/// `make-contact`: brings links that should touch, but do not, to the surface felt by the others
+/// (thesis 4.3.3–4.3.5, 4.4.1).
+///
+/// For each missing contact j, three rows J_d^j with F = K_d x_e + D_d ẋ_e, x_e = p_r − p.  The reference p_r starts
+/// at p when the link becomes missing and moves with v = λ (n + u)/‖n + u‖, where n is the normal of the closest
+/// contact and u the unit vector from p to its point (both unit vectors: as printed, 4.4.1 adds metres to one).
+/// Where n and u cancel, v = λ n.  ‖x_e‖ is bounded: a blocked link must not wind its reference up.
+/// Without any contact nobody knows where the surface is, and the task has no rows (C = ∅ in 4.3.1).
+class MakeContact final : public control::Task {
+ public:
+  explicit MakeContact(const control::BuildContext& context);
+  static void registerIn(control::Registry& registry);
+
+ private:
+  struct Reference {
+    bool active = false;
+    Eigen::Vector3d position_W = Eigen::Vector3d::Zero();
+  };
+
+  void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  Eigen::Vector3d desiredVelocity(const Eigen::Vector3d& point_W) const;
+
+  const control::MissingSet& missing_;
+  double stiffness_, damping_, speed_, bound_;
+  std::vector<Reference> references_;                              ///< by slot
+  std::vector<char> seen_;                                         ///< by slot
+};
+
+}  // namespace tactus::tasks

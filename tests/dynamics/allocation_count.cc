@@ -1,0 +1,60 @@
+#include "tests/dynamics/allocation_count.h"
+
+#include <atomic>
+#include <cstdlib>
+
+namespace {
+
+std::atomic<long> count{0};
+
+}  // namespace
+
+#ifdef __SANITIZE_ADDRESS__
+
+#include <sanitizer/allocator_interface.h>
+
+namespace {
+
+const int installed = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, size_t) { ++count; }, [](const volatile void*) {});
+
+}  // namespace
+
+#else
+
+// operator new comes here as well, and what this leaves out (aligned_alloc and its like) nothing here uses.
+extern "C" {
+
+void* __libc_malloc(size_t size);
+void* __libc_calloc(size_t number, size_t size);
+void* __libc_realloc(void* memory, size_t size);
+
+void* malloc(size_t size) {
+  ++count;
+  return __libc_malloc(size);
+}
+
+void* calloc(size_t number, size_t size) {
+  ++count;
+  return __libc_calloc(number, size);
+}
+
+void* realloc(void* memory, size_t size) {
+  ++count;
+  return __libc_realloc(memory, size);
+}
+
+}  // extern "C"
+
+#endif
+
+namespace tactus::dynamics {
+
+long allocationCount() {
+#ifdef __SANITIZE_ADDRESS__
+  static_cast<void>(installed);
+#endif
+  return count;
+}
+
+}  // namespace tactus::dynamics

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "tests/tasks/task_world.h"
+
+namespace tactus::test {
+namespace {
+
+TEST(ContactForce, PressesAlongTheNormalOfEachHeldContact) {
+  TaskWorld world;
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.1, -1).normalized();
+  const control::ContactRecord record = world.contactOn("index_distal", normal, 0.4);
+  world.sensed.contacts = {record, world.contactOn("palm", normal, 1)};
+  world.feel();
+  const auto task = world.make("contact-force", {{"on", "touch.held"}, {"force", "0.7"}});
+  EXPECT_TRUE(task->isContact());
+  auto rows = world.rowsFor(*task);
+  task->update(world.tick(), rows);
+  ASSERT_EQ(rows.rows, 1);
+  EXPECT_EQ(rows.force[0], 0.7);
+  Eigen::MatrixXd J(3, world.model.dof());
+  world.cache.pointJacobian(record.link, record.point_W, J.topRows<3>());
+  EXPECT_LT((rows.J() - normal.transpose() * J).norm(), 1e-12);
+  EXPECT_NEAR(task->error(), 0.3, 1e-12);
+}
+
+TEST(ContactForce, FeedbackBacksOffOnOneSideOnlyAndNoLowerThanItsFloor) {
+  TaskWorld world;
+  const auto task = world.make("contact-force", {{"on", "touch.held"}, {"feedback", "2"}, {"feedback-threshold", "1"},
+                                                 {"feedback-filter", "0"}, {"min-force", "-3"}});
+  auto rows = world.rowsFor(*task);
+  const auto reference = [&](double measured) {
+    world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, measured)};
+    world.feel();
+    task->update(world.tick(), rows);
+    return rows.force[0];
+  };
+  EXPECT_DOUBLE_EQ(reference(0.1), 0.5);
+  EXPECT_DOUBLE_EQ(reference(1.0), 0.5);
+  EXPECT_DOUBLE_EQ(reference(1.5), 0.5 - 2 * 0.5);
+  EXPECT_DOUBLE_EQ(reference(50), -3);
+}
+
+TEST(ContactForce, TheExcessIsFilteredWithItsTimeConstant) {
+  TaskWorld world;
+  const auto task = world.make("contact-force", {{"on", "touch.held"}, {"feedback", "1"}, {"feedback-filter", "0.01"}});
+  auto rows = world.rowsFor(*task);
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 2)};
+  world.feel();
+  double expected = 0;
+  for (int k = 0; k < 30; ++k) {
+    task->update(world.tick(), rows);
+    expected += 0.001 / 0.011 * (1 - expected);
+    EXPECT_NEAR(rows.force[0], 0.5 - expected, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace tactus::test

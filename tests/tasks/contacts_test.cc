@@ -1,0 +1,130 @@
+// The signal `contacts`: sets, hysteresis, means, and what is remembered.
+
+#include <gtest/gtest.h>
+
+#include "tests/tasks/task_world.h"
+
+namespace tactus::test {
+namespace {
+
+using control::ContactSet;
+using control::MissingSet;
+using control::TouchedPoints;
+
+const Eigen::Vector3d kDown(0, 0, -1);
+
+class ContactsSignal : public ::testing::Test {
+ protected:
+  TaskWorld world;
+  void makeTouch(const Attributes& attributes) {
+    values = control::makeValues(*world.registry.elements().find("contacts"), attributes);
+    world.touch = world.registry.makeSignal(world.context(values));
+  }
+  void step() {
+    world.sensed.time += world.dt;
+    world.feel();
+  }
+  control::ElementValues values;
+};
+
+TEST_F(ContactsSignal, SortsContactsIntoHeldUndesiredAndMissing) {
+  world.sensed.contacts = {world.contactOn("palm", kDown, 1), world.contactOn("index_distal", kDown, 0.5),
+                           world.contactOn("thumb_distal", kDown, 0.3)};
+  world.feel();
+  ASSERT_EQ(port<ContactSet>(world, "held").contacts.size(), 1u);
+  EXPECT_EQ(port<ContactSet>(world, "held").contacts[0].frame, world.link("index_distal"));
+  EXPECT_EQ(port<ContactSet>(world, "undesired").contacts.size(), 2u);
+  EXPECT_EQ(port<ContactSet>(world, "all").contacts.size(), 3u);
+  EXPECT_EQ(port<MissingSet>(world, "missing").points.size(), 8u);
+}
+
+TEST_F(ContactsSignal, OneContactALinkIsTheForceWeightedMean) {
+  control::ContactRecord a = world.contactOn("index_distal", kDown, 1);
+  control::ContactRecord b = a;
+  b.force_N = 3;
+  b.point_W = a.point_W + Eigen::Vector3d(0.004, 0, 0);
+  b.normal_W = Eigen::Vector3d(1, 0, 0);
+  world.sensed.contacts = {a, b};
+  world.feel();
+  const control::Contact& contact = port<ContactSet>(world, "held").contacts.at(0);
+  EXPECT_NEAR(contact.force_N, 4, 1e-12);
+  EXPECT_NEAR((contact.point_W - a.point_W).x(), 0.003, 1e-12);
+  const Eigen::Vector3d expected = Eigen::Vector3d(3, 0, -1).normalized();
+  EXPECT_LT((contact.normal_W - expected).norm(), 1e-12);
+}
+
+TEST_F(ContactsSignal, AChangeMustLastToCount) {
+  makeTouch({{"desired", "fingers"}, {"on-force", "0.05"}, {"off-force", "0.02"}, {"hold", "0.005"}});
+  const control::ContactRecord touch = world.contactOn("ring_medial", kDown, 0.06);
+  world.sensed.contacts = {touch};
+  for (int k = 0; k < 5; ++k) step();
+  EXPECT_EQ(port<ContactSet>(world, "held").contacts.size(), 0u) << "on for 4 ms only";
+  step();
+  EXPECT_EQ(port<ContactSet>(world, "held").contacts.size(), 1u);
+
+  // Between the two thresholds nothing changes, however long.
+  world.sensed.contacts[0].force_N = 0.03;
+  for (int k = 0; k < 50; ++k) step();
+  EXPECT_EQ(port<ContactSet>(world, "held").contacts.size(), 1u);
+
+  // A gap shorter than `hold` is bridged by the last contact, moving with the link.
+  world.sensed.contacts.clear();
+  for (int k = 0; k < 5; ++k) step();
+  ASSERT_EQ(port<ContactSet>(world, "held").contacts.size(), 1u);
+  EXPECT_LT((port<ContactSet>(world, "held").contacts[0].point_W - touch.point_W).norm(), 1e-12);
+  EXPECT_EQ(port<ContactSet>(world, "held").contacts[0].force_N, 0);
+  step();
+  EXPECT_EQ(port<ContactSet>(world, "held").contacts.size(), 0u);
+}
+
+TEST_F(ContactsSignal, LinksWithoutSkinFeelNothing) {
+  world.sensed.contacts = {world.contactOn("lwr_2", kDown, 5)};
+  world.feel();
+  EXPECT_TRUE(port<ContactSet>(world, "all").contacts.empty());
+  EXPECT_TRUE(port<TouchedPoints>(world, "points").points.empty());
+}
+
+TEST_F(ContactsSignal, PointsAreRememberedOncePerSpacing) {
+  control::ContactRecord touch = world.contactOn("middle_distal", kDown, 0.5);
+  world.sensed.contacts = {touch};
+  for (int k = 0; k < 10; ++k) step();
+  EXPECT_EQ(port<TouchedPoints>(world, "points").points.size(), 1u);
+  world.sensed.contacts[0].point_W.x() += 0.0019;
+  step();
+  EXPECT_EQ(port<TouchedPoints>(world, "points").points.size(), 1u);
+  world.sensed.contacts[0].point_W.x() += 0.0002;
+  step();
+  EXPECT_EQ(port<TouchedPoints>(world, "points").points.size(), 2u);
+}
+
+TEST_F(ContactsSignal, MissingPointsAreTheMiddlesOfTheLinks) {
+  world.feel();
+  for (const control::MissingContact& missing : port<MissingSet>(world, "missing").points) {
+    const auto& shape = std::get<description::CapsuleShape>(world.robot.links[missing.frame].shapes.at(0));
+    const Eigen::Vector3d middle = world.cache.framePose(missing.frame) * Eigen::Vector3d(0.5 * (shape.from + shape.to));
+    EXPECT_LT((missing.point_W - middle).norm(), 1e-12);
+  }
+}
+
+TEST_F(ContactsSignal, RefusesThresholdsTheWrongWayRound) {
+  try {
+    makeTouch({{"desired", "fingers"}, {"on-force", "0.02"}, {"off-force", "0.05"}});
+    FAIL();
+  } catch (const control::ElementError& error) {
+    EXPECT_EQ(error.attribute, "off-force");
+    EXPECT_STREQ(error.what(), "off-force must not be greater than on-force");
+  }
+}
+
+TEST_F(ContactsSignal, RefusesDesiredLinksWithoutSkin) {
+  try {
+    makeTouch({{"desired", "lwr_2"}});
+    FAIL();
+  } catch (const control::ElementError& error) {
+    EXPECT_EQ(error.attribute, "desired");
+    EXPECT_STREQ(error.what(), "link 'lwr_2' has no skin, so it cannot be desired to touch");
+  }
+}
+
+}  // namespace
+}  // namespace tactus::test

@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include "tests/tasks/task_world.h"
+
+namespace tactus::test {
+namespace {
+
+constexpr const char* kAlong = "0.60 -0.10 0.2; 0.72 -0.10 0.2; 0.72 0 0.2";
+
+double column(const control::Task& task, const std::string& name) {
+  std::vector<control::LogColumn> columns;
+  task.columns(columns);
+  for (const auto& c : columns) {
+    if (c.name == name) return *c.value;
+  }
+  ADD_FAILURE() << "no column " << name;
+  return 0;
+}
+
+class FollowSurface : public ::testing::Test {
+ protected:
+  TaskWorld world;
+  std::unique_ptr<control::Task> task;
+  control::TickTask rows;
+
+  void make(Attributes more) {
+    more.insert({{"frame", "palm"}, {"along", kAlong}, {"normal-filter", "0"}});
+    task = world.make("follow-surface", more);
+    rows = world.rowsFor(*task);
+  }
+  void update() {
+    world.feel();
+    task->update(world.tick(), rows);
+    world.sensed.time += world.dt;
+  }
+  Eigen::Isometry3d palm() { return world.cache.framePose(world.link("palm")); }
+};
+
+TEST_F(FollowSurface, ApproachesAlongTheLastNormalWhileNothingTouches) {
+  make({{"along", "0 0 0"}, {"approach-speed", "0.02"}, {"normal-damping", "100"}});
+  update();
+  const Eigen::Vector3d axis = palm().linear().col(0);
+  EXPECT_NEAR(axis.dot(rows.force.head<3>()), 100 * 0.02, 1e-9);
+  // Without contact no key is passed, however near.
+  EXPECT_EQ(column(*task, "keys_passed"), 0);
+}
+
+TEST_F(FollowSurface, NeverPushesAlongThePalmNormalInContact) {
+  make({});
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+  update();
+  EXPECT_NEAR(palm().linear().col(0).dot(rows.force.head<3>()), 0, 1e-9);
+}
+
+TEST_F(FollowSurface, FarFromTheKeyThePullIsStiffnessTimesReach) {
+  make({{"along", "5 -0.1 0.2"}, {"reach", "0.03"}, {"stiffness", "300"}, {"tilt", "0"}});
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+  update();
+  // The palm leans by 10 degrees here: only the part across its normal axis is stiff.
+  const Eigen::Vector3d axis = palm().linear().col(0);
+  Eigen::Vector3d way = Eigen::Vector3d(5, -0.1, 0.2) - palm().translation();
+  way.z() = 0;
+  Eigen::Vector3d expected = 300 * 0.03 * way.normalized();
+  expected -= axis * axis.dot(expected);
+  EXPECT_LT((rows.force.head<3>() - expected).norm(), 1e-9);
+}
+
+TEST_F(FollowSurface, TheMedianNormalIsTheMeanOfTheTwoMostDifferent) {
+  make({{"tilt", "0"}});
+  const Eigen::Vector3d a = Eigen::Vector3d(0.6, 0, -1).normalized();
+  const Eigen::Vector3d b = Eigen::Vector3d(-0.2, 0, -1).normalized();
+  world.sensed.contacts = {world.contactOn("index_distal", a, 0.5), world.contactOn("middle_distal", b, 0.5),
+                           world.contactOn("ring_distal", b, 0.5), world.contactOn("ring_medial", b, 0.5)};
+  update();
+  const Eigen::Vector3d median = (a + b).normalized();
+  // The moment turns the palm's normal axis towards the median normal, about both directions across it.
+  const Eigen::Vector3d axis = palm().linear().col(0);
+  const Eigen::Vector3d turn = axis.cross(median);
+  EXPECT_GT(turn.norm(), 0.05);
+  EXPECT_GT(rows.force.segment<3>(3).dot(turn) / (rows.force.segment<3>(3).norm() * turn.norm()), 0.99);
+}
+
+TEST_F(FollowSurface, NoMomentWhereTheHandIsAsWanted) {
+  make({{"tilt", "0.174532925"}});
+  // The start pose has the palm leaned by 10 degrees, fingers down, within the rounding of its joint angles.
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+  update();
+  EXPECT_LT(rows.force.segment<3>(3).norm(), 0.1) << "10 N m/rad: less than 0.01 rad";
+}
+
+TEST_F(FollowSurface, PassesKeysInContactAndGivesUpStalledOnes) {
+  world.feel();
+  make({{"stall-time", "2"}});
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+  update();
+  update();
+  EXPECT_EQ(column(*task, "keys_passed"), 1) << "the palm starts within 15 mm of the first key";
+  // The hand does not move: the second key is given up after two seconds, not before.
+  for (int k = 0; k < 1990; ++k) update();
+  EXPECT_EQ(column(*task, "keys_given_up"), 0);
+  for (int k = 0; k < 20; ++k) update();
+  EXPECT_EQ(column(*task, "keys_given_up"), 1);
+  EXPECT_EQ(column(*task, "keys_passed"), 1) << "a key given up is not passed";
+}
+
+TEST_F(FollowSurface, RefusesAxesThatAreNotPerpendicular) {
+  try {
+    make({{"forward-axis", "1 0 1"}});
+    FAIL();
+  } catch (const control::ElementError& error) {
+    EXPECT_EQ(error.attribute, "forward-axis");
+    EXPECT_STREQ(error.what(), "forward-axis must be perpendicular to normal-axis");
+  }
+}
+
+}  // namespace
+}  // namespace tactus::test

@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include "tests/tasks/task_world.h"
+
+namespace tactus::test {
+namespace {
+
+TEST(Posture, IsASpringAndDamperOnEachJoint) {
+  TaskWorld world;
+  world.sensed.qd.setConstant(0.2);
+  world.feel();
+  const auto task = world.make("posture", {{"joints", "thumb"}, {"stiffness", "1 2 3 4"}, {"damping", "0.1"},
+                                           {"q", "0.3 1 0 0"}});
+  auto rows = world.rowsFor(*task);
+  task->update(world.tick(), rows);
+  ASSERT_EQ(rows.rows, 4);
+  const Eigen::Vector4d reference(0.3, 1, 0, 0);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(rows.jacobian(k, 19 + k), 1);
+    EXPECT_NEAR(rows.force[k], (k + 1) * (reference[k] - world.sensed.q[19 + k]) - 0.1 * 0.2, 1e-12);
+  }
+}
+
+TEST(Posture, FreeJointsAreThoseOfFourThreeOne) {
+  TaskWorld world;
+  const auto task = world.make("posture", {{"joints", "free"}, {"delay", "0.2"}});
+  auto rows = world.rowsFor(*task);
+  // Untouched: C = ∅, all joints.
+  world.feel();
+  task->update(world.tick(), rows);
+  EXPECT_EQ(rows.rows, 23);
+  // A desired link touches: fingers and arm carry desired contacts, the thumb's chain has none.
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+  world.feel();
+  task->update(world.tick(), rows);
+  EXPECT_EQ(rows.rows, 4);
+  for (int k = 0; k < rows.rows; ++k) EXPECT_EQ(rows.jacobian(k, 19 + k), 1);
+  // The thumb is touched as well: no joint is free.
+  world.sensed.contacts.push_back(world.contactOn("thumb_distal", {0, 0, -1}, 0.5));
+  world.feel();
+  task->update(world.tick(), rows);
+  EXPECT_EQ(rows.rows, 0);
+  // All is lost: free again, but only after the delay.
+  world.sensed.contacts.clear();
+  world.sensed.time += 0.1;
+  world.feel();
+  task->update(world.tick(), rows);
+  EXPECT_LE(rows.rows, 4);
+  world.sensed.time += 0.11;
+  world.feel();
+  task->update(world.tick(), rows);
+  EXPECT_EQ(rows.rows, 23);
+}
+
+TEST(Posture, RefusesAReferenceOfTheWrongLength) {
+  TaskWorld world;
+  try {
+    world.make("posture", {{"joints", "thumb"}, {"q", "1 2 3"}});
+    FAIL();
+  } catch (const control::ElementError& error) {
+    EXPECT_EQ(error.attribute, "q");
+    EXPECT_STREQ(error.what(), "q has 3 numbers, expected 1 or 4 (one a joint)");
+  }
+}
+
+}  // namespace
+}  // namespace tactus::test
