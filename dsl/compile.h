@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "dsl/diagnostic.h"
 #include "dsl/stack.h"
 #include "framework/control/controller.h"
 #include "framework/control/registry.h"

@@ -42,7 +42,8 @@ std::string render(const Diagnostic& diagnostic) {
     const std::string carets(static_cast<std::size_t>(std::max(1, std::min(diagnostic.length, room))), '^');
     text += "  " + number + " | " + diagnostic.source_line + "\n";
     text += "  " + std::string(number.size(), ' ') + " | " +
-            indentBelow(diagnostic.source_line, diagnostic.place.column) + carets + (hint.empty() ? "" : " " + hint) + "\n";
+            indentBelow(diagnostic.source_line, diagnostic.place.column) + carets + (hint.empty() ? "" : " " + hint) +
+            "\n";
   } else if (!hint.empty()) {
     text += "  " + hint + "\n";
   }

@@ -65,7 +65,8 @@ void ElementChecker::readClasses(const XmlElement& stack) {
     if (!name) continue;
     const auto [place, is_new] = classes_.emplace(name->value, DefaultsClass{child.get(), "", {}});
     if (!is_new) {
-      findings_.errorAtValue(code::duplicate_name, *child, *name, "the stack has a class '" + name->value + "' already");
+      findings_.errorAtValue(code::duplicate_name, *child, *name,
+                             "the stack has a class '" + name->value + "' already");
       continue;
     }
     if (const XmlAttribute* base = child->attribute("base")) place->second.base = base->value;
@@ -172,6 +173,7 @@ void ElementChecker::checkText(const XmlElement& element) {
 
 void ElementChecker::checkChildren(const XmlElement& element, const ElementRow& row, CheckedElement& into) {
   std::map<std::string, int> counts;
+  bool some_unknown = false;
   const auto ruleFor = [&](const ElementRow* child) {
     return std::find_if(row.children.begin(), row.children.end(),
                         [&](const ChildRow& candidate) { return child && allows(candidate, *child); });
@@ -183,7 +185,8 @@ void ElementChecker::checkChildren(const XmlElement& element, const ElementRow& 
       const auto allowed = allowedChildren(row);
       sayMisplaced(*child, element, allowed);
       const auto meant = ruleFor(table_.find(nearestName(child->name, allowed)));
-      if (meant != row.children.end()) ++counts[meant->element];  // said once is enough
+      if (meant != row.children.end()) ++counts[meant->element];
+      if (!child_row) some_unknown = true;
       continue;
     }
     const int count = ++counts[rule->element];
@@ -192,8 +195,9 @@ void ElementChecker::checkChildren(const XmlElement& element, const ElementRow& 
                       tag(element.name) + " takes at most " + std::to_string(rule->max) + " " + kindOf(*rule));
     into.children.push_back(checkElement(*child, *child_row));
   }
+  // What an unknown element may have been meant as is not called missing, too.
   for (const ChildRow& rule : row.children)
-    if (counts[rule.element] < rule.min)
+    if (counts[rule.element] < rule.min && !(some_unknown && rule.element.starts_with('@')))
       findings_.error(code::missing_element, element,
                       tag(element.name) + " needs " + (rule.min == 1 ? "a " : std::to_string(rule.min) + " ") +
                           kindOf(rule));
@@ -240,8 +244,9 @@ bool ElementChecker::checkGivenAttributes(const XmlElement& element, const Eleme
     auto value = control::parseValue(*known, attribute.value, error);
     if (!value) {
       right = false;
-      findings_.errorAtValue(code::bad_value, element, attribute, "attribute '" + attribute.name + "': " + error,
-                             known->type == control::ValueType::choice ? nearestName(attribute.value, known->choices) : "");
+      findings_.errorAtValue(
+          code::bad_value, element, attribute, "attribute '" + attribute.name + "': " + error,
+          known->type == control::ValueType::choice ? nearestName(attribute.value, known->choices) : "");
       continue;
     }
     value->origin.kind = attribute.setting.empty() ? Origin::Kind::attribute : Origin::Kind::command_line;

@@ -14,8 +14,8 @@ namespace tactus::dsl {
 struct CheckedElement {
   const XmlElement* xml = nullptr;
   const control::ElementRow* row = nullptr;
-  control::ElementValues values;                                   ///< attributes, then classes, then the table's defaults
-  bool complete = false;                                           ///< every required value is there and every given one right
+  control::ElementValues values;                                ///< attributes, then classes, then the table's defaults
+  bool complete = false;                                    ///< every required value is there and every given one right
   std::vector<CheckedElement> children;
 
   std::vector<const CheckedElement*> all(std::string_view name) const;

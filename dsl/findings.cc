@@ -8,6 +8,15 @@ namespace {
 /// Bytes of "<name".
 std::size_t tagLength(const XmlElement& element) { return element.name.size() + 1; }
 
+/// Lines and columns from the outermost file to the finding: the order in which one reads.
+std::vector<std::pair<int, int>> wayOf(const Diagnostic& diagnostic) {
+  std::vector<std::pair<int, int>> way;
+  for (auto place = diagnostic.included_from.rbegin(); place != diagnostic.included_from.rend(); ++place)
+    way.emplace_back(place->line, place->column);
+  way.emplace_back(diagnostic.place.line, diagnostic.place.column);
+  return way;
+}
+
 }  // namespace
 
 Diagnostic Findings::make(const Code& code, const XmlSource& source, std::size_t at, std::size_t length,
@@ -53,6 +62,23 @@ void Findings::errorAtValue(const Code& code, const XmlElement& element, const X
   add(std::move(diagnostic));
 }
 
+void Findings::errorAtWord(const Code& code, const XmlElement& element, const XmlAttribute& attribute,
+                           std::size_t index, const std::string& message, const std::string& suggestion) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::string_view written =
+      std::string_view(element.source->text.text()).substr(attribute.value_at, attribute.value_size);
+  XmlAttribute word = attribute;
+  std::size_t at = written.find_first_not_of(blanks);
+  for (std::size_t i = 0; i < index && at != std::string_view::npos; ++i)
+    at = written.find_first_not_of(blanks, written.find_first_of(blanks, at));
+  const bool as_written = written.find_first_of("$&") == std::string_view::npos;  // else words may stand elsewhere
+  if (as_written && at != std::string_view::npos) {
+    word.value_at += at;
+    word.value_size = std::min(written.find_first_of(blanks, at), written.size()) - at;
+  }
+  errorAtValue(code, element, word, message, suggestion);
+}
+
 void Findings::warning(const Code& code, const XmlElement& element, const std::string& message) {
   Diagnostic diagnostic = make(code, *element.source, element.at, tagLength(element), message);
   diagnostic.severity = Severity::warning;
@@ -73,7 +99,11 @@ void Findings::add(Diagnostic diagnostic) {
 
 void Findings::throwErrors() const {
   if (errors_.empty()) return;
-  throw InvalidStack(errors_);
+  std::vector<Diagnostic> sorted = errors_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return wayOf(a) < wayOf(b);
+  });
+  throw InvalidStack(std::move(sorted));
 }
 
 }  // namespace tactus::dsl

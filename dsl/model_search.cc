@@ -22,7 +22,8 @@ ModelSearch findModel(const std::string& model, const std::string& from, const s
     search.tried.push_back(file);
     for (const auto& entry : fs::directory_iterator(place.empty() ? fs::path(".") : place, error))
       if (entry.path().extension() == ".urdf")
-        search.names.push_back(model.ends_with(".urdf") ? entry.path().filename().string() : entry.path().stem().string());
+        search.names.push_back(model.ends_with(".urdf") ? entry.path().filename().string()
+                                                        : entry.path().stem().string());
   }
   std::sort(search.names.begin(), search.names.end());
   return search;

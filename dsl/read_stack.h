@@ -13,12 +13,12 @@
 namespace tactus::dsl {
 
 struct ReadOptions {
-  std::map<std::string, std::string> set;                          ///< --set name=value: overrides <parameter>; unknown names are errors
-  std::vector<std::string> model_path;                             ///< folders searched for robot models, after the stack's own
+  std::map<std::string, std::string> set;         ///< --set name=value: overrides <parameter>; unknown names are errors
+  std::vector<std::string> model_path;                     ///< folders searched for robot models, after the stack's own
   /// Loads the plugin that <plugin name> asks for into the registry; throws std::runtime_error with the reason.
   std::function<void(const std::string& name)> load_plugin;
-  std::string backend;                                             ///< --backend: replaces the controller's; "" = as written
-  std::map<std::string, std::string> backend_options;              ///< option=value for that back end, e.g. solver=nlopt
+  std::string backend;                                        ///< --backend: replaces the controller's; "" = as written
+  std::map<std::string, std::string> backend_options;             ///< option=value for that back end, e.g. solver=nlopt
 };
 
 /// Adds the rows of the structural elements (<stack>, <robot>, <scene>, <box>, <level>, <controller>, …).

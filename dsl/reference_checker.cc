@@ -36,15 +36,12 @@ std::vector<std::string> jointNames(const description::Robot& robot) {
 }  // namespace
 
 void ReferenceChecker::say(const Code& code, const CheckedElement& element, const AttributeRow& row,
-                           const std::string& message, const std::string& suggestion) {
-  // A value from a class is told where the class gives it, by the element that uses it.
-  const XmlAttribute* written = element.xml->attribute(row.name);
-  const control::Origin& origin = element.values.value(row.name).origin;
-  if (written && origin.kind != control::Origin::Kind::defaults_class)
-    return findings_.errorAtValue(code, *element.xml, *written, message, suggestion);
-  findings_.error(code, *element.xml, "attribute '" + row.name + "'" +
-                  (origin.detail.empty() ? " by default" : " from class '" + origin.detail + "'") + ": " + message,
-                  suggestion);
+                           const std::string& message, const std::string& suggestion, std::size_t word) {
+  if (const XmlAttribute* written = element.xml->attribute(row.name))
+    return findings_.errorAtWord(code, *element.xml, *written, word, message, suggestion);
+  // From a class: told by the element that uses it, since another robot or scene might suit.
+  const std::string& of = element.values.value(row.name).origin.detail;
+  findings_.error(code, *element.xml, "attribute '" + row.name + "' from class '" + of + "': " + message, suggestion);
 }
 
 void ReferenceChecker::check(const CheckedElement& element) {
@@ -54,12 +51,19 @@ void ReferenceChecker::check(const CheckedElement& element) {
 
 void ReferenceChecker::checkValue(const CheckedElement& element, const AttributeRow& row) {
   const std::string& text = element.values.text(row.name);
+  // What stands in the table by default may be missing as long as the element does not ask for it.
+  const bool by_default = element.values.value(row.name).origin.kind == control::Origin::Kind::table_default;
+  if (by_default) {
+    if (row.type == ValueType::port) read_signals_.push_back(text.substr(0, text.find('.')));
+    return;
+  }
   switch (row.type) {
     case ValueType::link:
       if (robot_known_) checkWords(element, row, linkNames(stack_.robot, false), code::unknown_link, "link");
       break;
     case ValueType::links:
-      if (robot_known_) checkWords(element, row, linkNames(stack_.robot, true), code::unknown_link, "link or group of links");
+      if (robot_known_)
+        checkWords(element, row, linkNames(stack_.robot, true), code::unknown_link, "link or group of links");
       break;
     case ValueType::joints:
       if (robot_known_)
@@ -73,7 +77,7 @@ void ReferenceChecker::checkValue(const CheckedElement& element, const Attribute
       break;
     }
     case ValueType::port:
-      if (signals_known_) checkPort(element, row);
+      checkPort(element, row);
       break;
     default: break;
   }
@@ -83,15 +87,17 @@ void ReferenceChecker::checkWords(const CheckedElement& element, const Attribute
                                   const std::vector<std::string>& names, const Code& unknown, const std::string& what) {
   const std::string& text = element.values.text(row.name);
   auto words = row.type == ValueType::link ? std::vector<std::string>{text} : splitWords(text);
-  for (const std::string& word : words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
     if (contains(names, word)) continue;
     if (contains(row.choices, word)) {
-      if (words.size() > 1) say(code::bad_value, element, row, "'" + word + "' stands alone: it names no others beside it");
+      if (words.size() > 1)
+        say(code::bad_value, element, row, "'" + word + "' stands alone, with no other names", "", i);
       continue;
     }
     std::vector<std::string> candidates = names;
     candidates.insert(candidates.end(), row.choices.begin(), row.choices.end());
-    say(unknown, element, row, "the robot has no " + what + " '" + word + "'", nearestName(word, candidates));
+    say(unknown, element, row, "the robot has no " + what + " '" + word + "'", nearestName(word, candidates), i);
   }
 }
 
@@ -115,14 +121,16 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
     if (candidate.type == row.port_type) of_type.push_back(candidate.name);
   }
   const auto& ports = found->values.row().ports;
-  const auto known = std::find_if(ports.begin(), ports.end(), [&](const auto& candidate) { return candidate.name == port; });
+  const auto known =
+      std::find_if(ports.begin(), ports.end(), [&](const auto& candidate) { return candidate.name == port; });
   if (known == ports.end()) {
     const std::string nearest = nearestName(port, all);
     std::string listed;
     for (const std::string& name : all) listed += (listed.empty() ? "" : ", ") + name;
-    return say(code::unknown_port, element, row,
-               "signal '" + signal + "' has no port '" + port + "'" + (listed.empty() ? "" : ": its ports are " + listed),
-               nearest.empty() ? "" : signal + "." + nearest);
+    return say(
+        code::unknown_port, element, row,
+        "signal '" + signal + "' has no port '" + port + "'" + (listed.empty() ? "" : ": its ports are " + listed),
+        nearest.empty() ? "" : signal + "." + nearest);
   }
   if (known->type != row.port_type)
     say(code::wrong_port_type, element, row,
@@ -133,9 +141,9 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
 void ReferenceChecker::warnOfUnusedSignals(const std::vector<const CheckedElement*>& signals) {
   for (const CheckedElement* signal : signals) {
     if (!signal->values.has("name")) continue;
-    const bool reads = std::any_of(signal->row->attributes.begin(), signal->row->attributes.end(), [&](const auto& row) {
-      return row.type == ValueType::port && signal->values.has(row.name);
-    });
+    const bool reads =
+        std::any_of(signal->row->attributes.begin(), signal->row->attributes.end(),
+                    [&](const auto& row) { return row.type == ValueType::port && signal->values.has(row.name); });
     if (!reads && !contains(read_signals_, signal->values.text("name")))
       findings_.warning(code::unused_signal, *signal->xml,
                         "nothing reads the signal '" + signal->values.text("name") + "'");

@@ -58,6 +58,8 @@ class ExtrasReader {
     return {pose * Eigen::Vector3d(0, 0, -straight / 2), pose * Eigen::Vector3d(0, 0, straight / 2), radius};
   }
 
+  /// Capsules are Tactus's own, in either of two ways: <capsule radius length/> in the <geometry>, or, for readers
+  /// that know none, a <cylinder> in the <geometry> with an empty <capsule/> beside it.
   void addShape(const XmlElement& collision, description::Link& link) {
     const XmlElement* geometry = requireChild(collision, "geometry", findings_);
     if (!geometry) return;
@@ -65,6 +67,11 @@ class ExtrasReader {
       return findings_.error(code::missing_element, *geometry, "<geometry> needs a <capsule>, <box> or <sphere>");
     const XmlElement& shape = *geometry->children.front();
     const Eigen::Isometry3d pose = origin(collision);
+    const XmlElement* rounded = collision.child("capsule");
+    if (rounded) refuseOtherAttributes(*rounded, {}, findings_);
+    if (rounded && shape.name != "cylinder")
+      findings_.error(code::misplaced_element, *rounded,
+                      "<capsule/> rounds the ends of a <cylinder>, not of a <" + shape.name + ">");
     if (shape.name == "capsule") {
       refuseOtherAttributes(shape, {"radius", "length"}, findings_);
       const double radius = number(shape, "radius", positive);
@@ -77,9 +84,11 @@ class ExtrasReader {
     } else if (shape.name == "cylinder") {
       const double radius = number(shape, "radius", positive);
       const double length = number(shape, "length", positive);
+      if (rounded) return link.shapes.push_back(capsule(pose, radius, length));
       link.shapes.push_back(capsule(pose, std::min(radius, length / 2), std::max(0.0, length - 2 * radius)));
       findings_.warning(code::shape_not_felt, shape,
-                        "link '" + link.name + "' touches with the capsule inside this cylinder: give a <capsule> to choose");
+                        "link '" + link.name + "' touches with the capsule inside this cylinder: say <capsule/> in the "
+                        "<collision> to round its ends");
     } else if (shape.name == "mesh") {
       findings_.warning(code::shape_not_felt, shape,
                         "link '" + link.name + "' cannot touch with a mesh: give a <capsule>, <box> or <sphere>");
@@ -134,10 +143,11 @@ class ExtrasReader {
     const XmlAttribute* given = requireAttribute(element, attribute, findings_);
     if (!given) return {};
     auto words = splitWords(given->value);
-    for (const std::string& word : words)
-      if (std::find(names.begin(), names.end(), word) == names.end())
-        findings_.errorAtValue(unknown, element, *given, "the robot has no " + std::string(what) + " '" + word + "'",
-                               nearestName(word, names));
+    for (std::size_t i = 0; i < words.size(); ++i)
+      if (std::find(names.begin(), names.end(), words[i]) == names.end())
+        findings_.errorAtWord(unknown, element, *given, i,
+                              "the robot has no " + std::string(what) + " '" + words[i] + "'",
+                              nearestName(words[i], names));
     return words;
   }
 

@@ -125,8 +125,9 @@ class RobotChecker {
     if (roots.empty())
       return findings_.error(code::no_root_link, *file_.root, "no link is the root: every one is the child of a joint");
     for (std::size_t i = 1; i < roots.size(); ++i)
-      findings_.error(code::several_root_links, *roots[i],
-                      "link '" + nameOf(*roots[i]) + "' has no parent, but '" + nameOf(*roots[0]) + "' is the root already");
+      findings_.error(
+          code::several_root_links, *roots[i],
+          "link '" + nameOf(*roots[i]) + "' has no parent, but '" + nameOf(*roots[0]) + "' is the root already");
     if (findings_.hasErrors()) return;
 
     std::set<std::string> reached;
@@ -139,7 +140,8 @@ class RobotChecker {
     }
     for (const XmlElement* link : file_.links)
       if (!reached.count(nameOf(*link)))
-        return findings_.error(code::kinematic_loop, *link, "link '" + nameOf(*link) + "' is part of a closed loop of joints");
+        return findings_.error(code::kinematic_loop, *link,
+                               "link '" + nameOf(*link) + "' is part of a closed loop of joints");
   }
 
   static std::string nameOf(const XmlElement& element) { return element.attribute("name")->value; }

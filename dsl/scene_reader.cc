@@ -41,7 +41,8 @@ const std::map<std::string, ShapeReader>& shapeReaders() {
   static const std::map<std::string, ShapeReader> readers{
       {"plane", [](const ElementValues&) -> PrimitiveShape { return description::PlanePrimitive{}; }},
       {"box", [](const ElementValues& v) -> PrimitiveShape { return description::BoxPrimitive{v.vector3("size")}; }},
-      {"sphere", [](const ElementValues& v) -> PrimitiveShape { return description::SpherePrimitive{v.real("radius")}; }},
+      {"sphere",
+       [](const ElementValues& v) -> PrimitiveShape { return description::SpherePrimitive{v.real("radius")}; }},
       {"cylinder",
        [](const ElementValues& v) -> PrimitiveShape {
          return description::CylinderPrimitive{v.real("radius"), v.real("length")};
@@ -124,7 +125,8 @@ class SceneReader {
     const XmlElement& element = *elements_[i]->xml;
     const XmlAttribute* on = element.attribute("on");
     const auto say = [&](const Code& code, const std::string& message, const std::string& suggestion = "") {
-      on ? findings_.errorAtValue(code, element, *on, message, suggestion) : findings_.error(code, element, message, suggestion);
+      on ? findings_.errorAtValue(code, element, *on, message, suggestion)
+         : findings_.error(code, element, message, suggestion);
       return false;
     };
     const auto found = index_.find(object.on);

@@ -57,6 +57,11 @@ std::string SourceText::line(std::size_t offset) const {
   return text_.substr(start, end - start);
 }
 
+std::string SourceText::lineAt(int number) const {
+  const bool exists = number >= 1 && static_cast<std::size_t>(number) <= line_starts_.size();
+  return exists ? line(line_starts_[static_cast<std::size_t>(number) - 1]) : "";
+}
+
 std::optional<std::size_t> SourceText::firstBadByte() const {
   for (std::size_t at = 0; at < text_.size();) {
     const std::size_t length = sequenceLength(text_, at);

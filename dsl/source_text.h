@@ -22,6 +22,8 @@ class SourceText {
   description::Place place(std::size_t offset) const;
   /// The line that holds the offset, without its end ("\n" or "\r\n").
   std::string line(std::size_t offset) const;
+  /// The same by its number; "" when there is no such line.
+  std::string lineAt(int number) const;
   /// Offset of the first byte that is not UTF-8.
   std::optional<std::size_t> firstBadByte() const;
   /// Offset of the first character after a byte-order mark.

@@ -32,7 +32,7 @@ struct LevelDescription {
 struct ObjectDescription {
   description::Object object;                                      ///< pose without jitter, `on` resolved
   Eigen::Vector3d jitter = Eigen::Vector3d::Zero();
-  std::string on;                                                  ///< the object that carries it, whose jitter it shares; "" = none
+  std::string on;                                     ///< the object that carries it, whose jitter it shares; "" = none
   control::ElementValues values;                                   ///< as read; `pose` is that in the carrier's top
   std::vector<control::ElementValues> shapes;                      ///< of object.primitives, as read
 };
@@ -60,7 +60,7 @@ struct Stack {
   ElementInstance controller;                                      ///< base attributes: backend, rate
   control::ElementValues back_end;                                 ///< the options of the chosen back end
   RunOptions run;
-  std::map<std::string, std::string> files;                        ///< every file read → its content, for hashes and copies
+  std::map<std::string, std::string> files;                    ///< every file read → its content, for hashes and copies
   /// Every file that another one brought in → the places that did, innermost first.
   std::map<std::string, std::vector<description::Place>> included_from;
 

@@ -8,9 +8,10 @@ using control::ElementKind;
 using control::ElementRow;
 using control::ValueType;
 
-const AttributeRow class_of_object{.name = "class",
-                                   .type = ValueType::element_class,
-                                   .description = "The <defaults> class whose values this object takes where it gives none."};
+const AttributeRow class_of_object{
+    .name = "class",
+    .type = ValueType::element_class,
+    .description = "The <defaults> class whose values this object takes where it gives none."};
 
 AttributeRow shapePose() {
   return {.name = "pose",
@@ -28,30 +29,47 @@ AttributeRow positiveLength(const std::string& name, const std::string& descript
 ElementRow stackRow() {
   return {.name = "stack",
           .kind = ElementKind::structure,
-          .description = "A robot, a scene, signals, and tasks in levels of priority: everything that one controller is made of.",
-          .attributes = {{.name = "format", .type = ValueType::integer, .required = true,
+          .description =
+              "A robot, a scene, signals, and tasks in levels of priority: everything that one controller is made of.",
+          .attributes = {{.name = "format",
+                          .type = ValueType::integer,
+                          .required = true,
                           .description = "The version of the language; this one is 1."},
-                         {.name = "name", .type = ValueType::identifier,
+                         {.name = "name",
+                          .type = ValueType::identifier,
                           .description = "The name that runs are filed under; not given: that of the file."}},
-          .children = {{"parameter"}, {"include"}, {"defaults"}, {"plugin"}, {"robot", 1, 1}, {"scene", 0, 1},
-                       {"signals"}, {"level", 1}, {"controller", 1, 1}, {"run", 0, 1}}};
+          .children = {{"parameter"},
+                       {"include"},
+                       {"defaults"},
+                       {"plugin"},
+                       {"robot", 1, 1},
+                       {"scene", 0, 1},
+                       {"signals"},
+                       {"level", 1},
+                       {"controller", 1, 1},
+                       {"run", 0, 1}}};
 }
 
 ElementRow parameterRow() {
   return {.name = "parameter",
           .kind = ElementKind::structure,
           .description = "A value with a name, put into other attributes by ${name}; --set name=value replaces it.",
-          .attributes = {{.name = "name", .type = ValueType::identifier, .required = true, .description = "Its name."},
-                         {.name = "value", .type = ValueType::text, .required = true, .description = "Taken as written."},
-                         {.name = "unit", .type = ValueType::text, .description = "For the reader; nothing is converted."}}};
+          .attributes = {
+              {.name = "name", .type = ValueType::identifier, .required = true, .description = "Its name."},
+              {.name = "value", .type = ValueType::text, .required = true, .description = "Taken as written."},
+              {.name = "unit", .type = ValueType::text, .description = "For the reader; nothing is converted."}}};
 }
 
 ElementRow includeRow() {
-  return {.name = "include",
-          .kind = ElementKind::structure,
-          .description = "Stands for what the file holds.  That file has the same element outermost as the one around the include.",
-          .attributes = {{.name = "file", .type = ValueType::file, .required = true,
-                          .description = "Relative to the folder of the file in which the include stands."}}};
+  return {
+      .name = "include",
+      .kind = ElementKind::structure,
+      .description =
+          "Stands for what the file holds.  That file has the same element outermost as the one around the include.",
+      .attributes = {{.name = "file",
+                      .type = ValueType::file,
+                      .required = true,
+                      .description = "Relative to the folder of the file in which the include stands."}}};
 }
 
 ElementRow defaultsRow() {
@@ -137,11 +155,20 @@ ElementRow levelRow() {
   return {.name = "level",
           .kind = ElementKind::structure,
           .description = "Tasks of one priority.  Lower levels must not disturb those above.",
-          .attributes = {{.name = "priority", .type = ValueType::integer, .required = true,
-                          .description = "1 is the highest; the levels of a stack rise strictly.", .lower = 1},
-                         {.name = "weight", .type = ValueType::real, .unit = "1",
-                          .description = "For weighted back ends; not given: by their ratio.", .lower = 0, .lower_open = true},
-                         {.name = "strict", .type = ValueType::flag, .default_text = "false",
+          .attributes = {{.name = "priority",
+                          .type = ValueType::integer,
+                          .required = true,
+                          .description = "1 is the highest; the levels of a stack rise strictly.",
+                          .lower = 1},
+                         {.name = "weight",
+                          .type = ValueType::real,
+                          .unit = "1",
+                          .description = "For weighted back ends; not given: by their ratio.",
+                          .lower = 0,
+                          .lower_open = true},
+                         {.name = "strict",
+                          .type = ValueType::flag,
+                          .default_text = "false",
                           .description = "Refuse back ends that would only weigh this level against others."}},
           .children = {{"@task", 1}, {"include"}}};
 }
@@ -184,12 +211,19 @@ void addStructureElements(control::Registry& registry) {
     registry.addStructure(std::move(row));
   registry.addStructure(shapeRow("plane", "The half space below z = 0 of its own frame.", {}));
   registry.addStructure(shapeRow("box", "A box about its own origin.",
-                                 {{.name = "size", .type = ValueType::reals, .unit = "m", .required = true,
-                                   .description = "Full lengths of its edges along x y z.", .lower = 0, .lower_open = true,
+                                 {{.name = "size",
+                                   .type = ValueType::reals,
+                                   .unit = "m",
+                                   .required = true,
+                                   .description = "Full lengths of its edges along x y z.",
+                                   .lower = 0,
+                                   .lower_open = true,
                                    .count = 3}}));
-  registry.addStructure(shapeRow("sphere", "A sphere about its own origin.", {positiveLength("radius", "Its radius.")}));
-  registry.addStructure(shapeRow("cylinder", "A cylinder along z about its own origin.",
-                                 {positiveLength("radius", "Its radius."), positiveLength("length", "Its full height.")}));
+  registry.addStructure(
+      shapeRow("sphere", "A sphere about its own origin.", {positiveLength("radius", "Its radius.")}));
+  registry.addStructure(
+      shapeRow("cylinder", "A cylinder along z about its own origin.",
+               {positiveLength("radius", "Its radius."), positiveLength("length", "Its full height.")}));
   registry.addStructure(shapeRow("capsule", "A capsule along z about its own origin.",
                                  {positiveLength("radius", "Its radius."),
                                   positiveLength("length", "Of its straight part.")}));

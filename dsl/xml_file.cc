@@ -32,8 +32,8 @@ const tinyxml2::XMLElement* nextInDocument(const tinyxml2::XMLElement* element) 
 }  // namespace
 
 const XmlAttribute* XmlElement::attribute(std::string_view wanted) const {
-  const auto found =
-      std::find_if(attributes.begin(), attributes.end(), [&](const auto& attribute) { return attribute.name == wanted; });
+  const auto found = std::find_if(attributes.begin(), attributes.end(),
+                                  [&](const auto& attribute) { return attribute.name == wanted; });
   return found == attributes.end() ? nullptr : &*found;
 }
 
@@ -98,7 +98,7 @@ std::unique_ptr<XmlElement> parseXml(std::shared_ptr<const XmlSource> source, Fi
     for (const ScannedAttribute& attribute : scanned.attributes) {
       const char* value = node->Attribute(attribute.name.c_str());
       element->attributes.push_back(
-          {attribute.name, value ? value : "", attribute.name_at, attribute.value_at, attribute.value_size});
+          {attribute.name, value ? value : "", attribute.name_at, attribute.value_at, attribute.value_size, ""});
     }
     made.push_back(element.get());
     if (scanned.parent < 0) {

@@ -49,7 +49,8 @@ class Scanner {
     at_ = found + closing.size();
   }
   void checkControl(std::size_t at) {
-    if (static_cast<unsigned char>(text_[at]) < 0x20 && !isBlank(text_[at])) fail(at, "a control character stands here");
+    if (static_cast<unsigned char>(text_[at]) < 0x20 && !isBlank(text_[at]))
+      fail(at, "a control character stands here");
   }
   std::string_view scanName() {
     const std::size_t start = at_;
@@ -180,7 +181,8 @@ class Scanner {
     attribute.value_size = end - at_;
     for (; at_ < end && !failed(); ++at_) {
       checkControl(at_);
-      if (text_[at_] == '<') fail(at_, "'<' stands in the value of " + what + ": write '&lt;', or close the quote before it");
+      if (text_[at_] == '<')
+        fail(at_, "'<' stands in the value of " + what + ": write '&lt;', or close the quote before it");
       if (text_[at_] == '&') scanReference(end);
     }
     if (failed()) return;

@@ -13,7 +13,7 @@ namespace tactus::sim {
 struct ContactOptions {
   /// N: the normal force of one contact point saturates here, so that a deep start cannot blow the state up.
   double force_limit = 500;
-  /// Bristle stiffness over normal stiffness, tangential σ₀ = ratio · k (Mindlin's ratio for ν ≈ 0.3 is 0.8; 1 is simple).
+  /// Bristle stiffness σ₀ over normal stiffness k.  Mindlin's value for equal elastic bodies is 0.7 to 1.
   double bristle_stiffness_ratio = 1;
   /// s: bristle damping σ₁ = relaxation · σ₀.
   double bristle_relaxation = 2e-3;

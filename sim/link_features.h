@@ -10,7 +10,7 @@ namespace tactus::sim {
 /// What of a link can touch: a capsule; `from == to` is a sphere.
 struct LinkFeature {
   int link = -1;                                                   ///< index into description::Robot::links
-  int body = -1;                                                   ///< the moving body that carries it, an engine's index
+  int body = -1;                                                   ///< the body that carries it, an engine's index
   Eigen::Vector3d from = Eigen::Vector3d::Zero();                  ///< m, body frame
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   double radius = 0;                                               ///< m

@@ -42,11 +42,7 @@ class SimbodyPlant::Implementation {
         mobility_forces_(robot_.dof(), 0.0),
         accelerations_(robot_.dof(), 0.0) {
     sensed_.contacts.reserve(contact_.capacity());
-    try {
-      realize();
-    } catch (const std::exception& error) {
-      throw runtime::PlantError(std::string("the start cannot be simulated: ") + error.what());
-    }
+    realize();
     contact_.evaluate(motions_, options_.step);
     fillSensed();
   }
@@ -98,8 +94,8 @@ class SimbodyPlant::Implementation {
   Eigen::VectorXd checkedStart(const description::Robot& robot, const Eigen::VectorXd& start_q) const {
     constexpr double rounding = 1e-9;
     if (start_q.size() != robot_.dof())
-      throw runtime::PlantError("the start has " + std::to_string(start_q.size()) + " values, but robot '" + robot.name +
-                                "' has " + std::to_string(robot_.dof()) + " moving joints");
+      throw runtime::PlantError("the start has " + std::to_string(start_q.size()) + " values, but robot '" +
+                                robot.name + "' has " + std::to_string(robot_.dof()) + " moving joints");
     const std::vector<int> moving = robot.movingJoints();
     for (int i = 0; i < robot_.dof(); ++i) {
       const description::Joint& joint = robot.joints[moving[i]];
@@ -120,7 +116,8 @@ class SimbodyPlant::Implementation {
     for (int i = 0; i < robot_.dof(); ++i)
       if (!std::isfinite(torque[i]))
         throw runtime::PlantError("the torque of joint '" + names_[i].name + "' is " + print(torque[i]) + " at t = " +
-                                  print(time()) + " s: the controller has lost its numbers, the plant stays where it was");
+                                  print(roundedTime(steps_)) +
+                                  " s: the controller has lost its numbers, the plant stays where it was");
   }
 
   /// 1/(M⁻¹)_ii at the start.
@@ -134,6 +131,10 @@ class SimbodyPlant::Implementation {
   }
 
   double time() const { return static_cast<double>(steps_) * options_.step; }
+  /// For messages: to a nanosecond.
+  double roundedTime(std::int64_t steps) const {
+    return std::round(static_cast<double>(steps) * options_.step * 1e9) / 1e9;
+  }
 
   void realizePosition() {
     toEigen(state_.updQ()) = q_;
@@ -172,12 +173,13 @@ class SimbodyPlant::Implementation {
       q_ += options_.step * qd_;
       checkSpeed();
       realize();
-    } catch (const std::exception& error) {
-      q_ = last_q_;
-      qd_ = last_qd_;
-      realize();
-      if (dynamic_cast<const runtime::PlantError*>(&error)) throw;
-      throw runtime::PlantError("Simbody failed at t = " + print(time()) + " s: " + error.what() + ". " + usual_causes);
+    } catch (const runtime::PlantError&) {
+      takeBack();
+      throw;
+    } catch (const SimTK::Exception::Base& error) {
+      takeBack();
+      throw runtime::PlantError("Simbody failed at t = " + print(roundedTime(steps_)) + " s: " + error.getMessage() +
+                                ". " + usual_causes);
     }
     ++steps_;
     contact_.commit();
@@ -185,14 +187,23 @@ class SimbodyPlant::Implementation {
     contact_.evaluate(motions_, options_.step);
   }
 
+  void takeBack() {
+    q_ = last_q_;
+    qd_ = last_qd_;
+    realize();
+  }
+
   void checkSpeed() const {
-    for (int i = 0; i < robot_.dof(); ++i) {
-      if (std::abs(qd_[i]) <= options_.velocity_limit) continue;   // false for NaN, too
-      const bool finite = std::isfinite(qd_[i]);
-      throw runtime::PlantError("joint '" + names_[i].name + (finite ? "' runs away: its speed reaches " : "' is lost: its speed is ") +
-                                print(qd_[i]) + " " + names_[i].unit + "/s at t = " + print(time() + options_.step) +
-                                " s (limit " + print(options_.velocity_limit) + "). " + usual_causes);
-    }
+    for (int i = 0; i < robot_.dof(); ++i)
+      if (!std::isfinite(qd_[i]))
+        throw runtime::PlantError("joint '" + names_[i].name + "' is lost: its speed is " + print(qd_[i]) + " at t = " +
+                                  print(roundedTime(steps_ + 1)) + " s. " + usual_causes);
+    int fastest = 0;
+    if (robot_.dof() == 0 || qd_.cwiseAbs().maxCoeff(&fastest) <= options_.velocity_limit) return;
+    throw runtime::PlantError("joint '" + names_[fastest].name + "' runs away: its speed reaches " +
+                              print(qd_[fastest]) + " " + names_[fastest].unit + "/s at t = " +
+                              print(roundedTime(steps_ + 1)) + " s (limit " + print(options_.velocity_limit) + "). " +
+                              usual_causes);
   }
 
   void fillSensed() {
@@ -218,8 +229,13 @@ class SimbodyPlant::Implementation {
 };
 
 SimbodyPlant::SimbodyPlant(const description::Robot& robot, const description::Scene& scene,
-                           const Eigen::VectorXd& start_q, const PlantOptions& options)
-    : implementation_(std::make_unique<Implementation>(robot, scene, start_q, options)) {}
+                           const Eigen::VectorXd& start_q, const PlantOptions& options) {
+  try {
+    implementation_ = std::make_unique<Implementation>(robot, scene, start_q, options);
+  } catch (const SimTK::Exception::Base& error) {
+    throw runtime::PlantError("Simbody cannot start robot '" + robot.name + "': " + error.getMessage());
+  }
+}
 
 SimbodyPlant::~SimbodyPlant() = default;
 

@@ -10,8 +10,8 @@ namespace tactus::sim {
 
 /// A description::Robot as a Simbody tree: one mobilized body per moving joint (Pin or Slider), fixed links merged into
 /// the body that carries them, rotor inertia added as the thin disk that robot.h defines.  q and u are in the order of
-/// description::Robot::movingJoints().  Gravity is a set of body forces that one asks for, not a force subsystem, which
-/// would cost a quarter of a step; joint damping, friction and stops are not part of this class.
+/// description::Robot::movingJoints().  There is no force subsystem, whose bookkeeping would cost every step: gravity is
+/// a set of body forces that one asks for.  Joint damping, friction and stops are not part of this class.
 /// Only the sources of `sim` and tests include this header: it brings Simbody with it.
 class SimbodyRobot {
  public:

@@ -181,17 +181,14 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
                                                 : Eigen::Vector3d(way * (reach_ / near_));
   advanceKey(tick.time, distance_);
 
-  const Eigen::Vector3d axis_W = R_WH.col(0);
-  const auto acrossAxis = [&](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - axis_W * axis_W.dot(v)); };
-
-  Eigen::Vector3d force = stiffness_ * acrossAxis(x_e);
+  const auto across = [&](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - normal_W_ * normal_W_.dot(v)); };
   const Eigen::Vector3d v_W = velocity.head<3>();
-  force -= damping_ * acrossAxis(v_W);
   const double wanted_normal_speed = contacts_.contacts.empty() ? approach_speed_ : 0;
-  force += damping_normal_ * (wanted_normal_speed - axis_W.dot(v_W)) * axis_W;
+  const Eigen::Vector3d force = stiffness_ * x_e - damping_ * across(v_W) +
+                                damping_normal_ * (wanted_normal_speed - normal_W_.dot(v_W)) * normal_W_;
 
   const Eigen::Vector3d turn = orientationError(R_WH, wantedOrientation(R_WH));
-  const Eigen::Vector3d moment = turn_stiffness_ * acrossAxis(turn) + yaw_stiffness_ * axis_W.dot(turn) * axis_W -
+  const Eigen::Vector3d moment = turn_stiffness_ * across(turn) + yaw_stiffness_ * normal_W_.dot(turn) * normal_W_ -
                                  turn_damping_ * velocity.tail<3>();
 
   rows.rows = 6;

@@ -14,8 +14,9 @@ namespace tactus::tasks {
 ///    plane ⟂ n_m (A.1.2, A.1.3), leaned by `tilt` so that the forward end goes into the surface;
 /// 3. the wanted position p_r: towards the key p_f, within the plane ⟂ n_m, a step `reach` ahead, less when nearer
 ///    than `near` (A.1.4–A.1.6);
-/// 4. the wrench F = K x_e − D ẋ_e (A.1.7–A.1.11) with no stiffness along the normal axis, on the frame Jacobian J_e
-///    (6 rows, linear first, world axes).
+/// 4. the wrench F = K x_e − D ẋ (A.1.7–A.1.11) with no stiffness along the normal, on the frame Jacobian J_e (6 rows,
+///    linear first, world axes).  K and D stand in the frame of A.1.3, not in the hand's: the two differ by `tilt`,
+///    and a hand that leans would be lifted or pressed by its own sweep.
 /// Without contact the frame approaches along the last normal at `approach-speed`.
 ///
 /// A key counts as passed when its tangential distance falls below `key-threshold` while in contact.  It is given up

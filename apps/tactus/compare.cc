@@ -207,7 +207,7 @@ void addCompare(CLI::App& program, Context& context) {
       ->capture_default_str();
   command->add_option("--every", arguments->every, "Solve every K-th tick problem of the first run with all back ends")
       ->type_name("K")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   arguments->declare(*command);
   command->add_flag("--json", context.json, "{stack, seed, reference, sampled_ticks, backends: [{backend, closed_loop, same_states}]}");

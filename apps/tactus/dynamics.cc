@@ -5,6 +5,7 @@
 #include "apps/tactus/command.h"
 #include "apps/tactus/program.h"
 #include "apps/tactus/text.h"
+#include "dsl/model_search.h"
 #include "dsl/read_robot.h"
 #include "framework/dynamics/aba.h"
 #include "framework/dynamics/crba.h"
@@ -26,20 +27,15 @@ struct DynamicsArguments {
   std::string q, qd, qdd, tau, gravity;
 };
 
-/// A file as it is, or the name of a shipped robot.
+/// A file as it is, or the name of a robot in the folders of models.
 std::string findModel(const std::string& model) {
   if (std::filesystem::is_regular_file(model)) return model;
   std::vector<std::string> folders = runtime::foldersFromEnvironment("TACTUS_MODEL_PATH");
   folders.push_back(runtime::shippedModelFolder());
-  std::string tried = model;
-  for (const std::string& folder : folders) {
-    for (const std::string& name : {model + ".urdf", model + "/" + model + ".urdf", model}) {
-      const std::string path = folder + "/" + name;
-      if (std::filesystem::is_regular_file(path)) return path;
-      tried += ", " + path;
-    }
-  }
-  throw runtime::FileError(model, "is neither a file nor the name of a robot; tried " + tried);
+  const dsl::ModelSearch search = dsl::findModel(model, ".", folders);
+  if (!search.file.empty()) return search.file;
+  throw runtime::FileError(model, "is neither a file nor the name of a robot; tried " + joined(search.tried) +
+                                      "; robots there are: " + joined(search.names));
 }
 
 /// One number for each joint; throws UsageError that names the joints.
@@ -59,11 +55,11 @@ Vector3d gravityVector(const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-ordered_json toJson(const VectorXd& vector) { return std::vector<double>(vector.begin(), vector.end()); }
+ordered_json listOf(const VectorXd& vector) { return std::vector<double>(vector.begin(), vector.end()); }
 
-ordered_json toJson(const Eigen::Ref<const MatrixXd>& matrix) {
+ordered_json rowsOf(const MatrixXd& matrix) {
   ordered_json rows = ordered_json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(toJson(VectorXd(matrix.row(i).transpose())));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(listOf(matrix.row(i).transpose()));
   return rows;
 }
 
@@ -73,9 +69,9 @@ ordered_json frames(const dynamics::Model& model, const dynamics::Workspace& wor
   for (int i = 0; i < static_cast<int>(model.frames().size()); ++i) {
     const Eigen::Isometry3d pose = dynamics::framePose(model, workspace, i);
     dynamics::frameJacobian(model, workspace, i, jacobian);
-    frames[model.frames()[static_cast<size_t>(i)].name] = {{"position", toJson(VectorXd(pose.translation()))},
-                                                          {"rotation", toJson(MatrixXd(pose.linear()))},
-                                                          {"jacobian", toJson(jacobian)}};
+    frames[model.frames()[static_cast<size_t>(i)].name] = {{"position", listOf(pose.translation())},
+                                                          {"rotation", rowsOf(pose.linear())},
+                                                          {"jacobian", rowsOf(jacobian)}};
   }
   return frames;
 }
@@ -113,18 +109,18 @@ int printDynamics(const DynamicsArguments& arguments) {
     MatrixXd mass_matrix = MatrixXd::Zero(model.dof(), model.dof());
     VectorXd result(model.dof());
     dynamics::crba(model, q, workspace, mass_matrix);
-    json["mass_matrix"] = toJson(mass_matrix);
+    json["mass_matrix"] = rowsOf(mass_matrix);
     dynamics::nonlinearEffects(model, q, qd, gravity_W, workspace, result);
-    json["bias"] = toJson(result);
+    json["bias"] = listOf(result);
     dynamics::gravityTorque(model, q, gravity_W, workspace, result);
-    json["gravity"] = toJson(result);
+    json["gravity"] = listOf(result);
     if (!arguments.qdd.empty()) {
       dynamics::rnea(model, q, qd, qdd, gravity_W, workspace, result);
-      json["inverse_dynamics"] = toJson(result);
+      json["inverse_dynamics"] = listOf(result);
     }
     if (!arguments.tau.empty()) {
       dynamics::aba(model, q, qd, tau, gravity_W, workspace, result);
-      json["forward_dynamics"] = toJson(result);
+      json["forward_dynamics"] = listOf(result);
     }
   }
   dynamics::forwardKinematics(model, q, workspace);

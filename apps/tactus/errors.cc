@@ -15,7 +15,10 @@ using nlohmann::ordered_json;
 
 int say(const Context& context, int code, const std::string& message) {
   std::cerr << "tactus: " << message << "\n";
-  if (context.json) std::cout << ordered_json{{"errors", {{{"message", message}}}}}.dump(2) << "\n";
+  if (context.json) {
+    const ordered_json error{{"message", message}};
+    std::cout << ordered_json{{"errors", ordered_json::array({error})}}.dump(2) << "\n";
+  }
   return code;
 }
 

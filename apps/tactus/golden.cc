@@ -68,7 +68,7 @@ std::string processor() {
   return info.substr(colon + 2, info.find('\n', colon) - colon - 2);
 }
 
-ordered_json provenance(const Session& session, const std::string& reason, const Program& program) {
+ordered_json provenance(const Session& session, const std::string& reason, Program& program) {
   ordered_json inputs = ordered_json::object();
   for (const auto& [file, content] : session.stack().files) inputs[fs::path(file).filename().string()] = hashOf(content);
   ordered_json plugins = ordered_json::object();

@@ -16,11 +16,6 @@ constexpr const char* examples = R"(Examples:
 Exit codes: 0 done, 1 comparison or golden mismatch, 2 usage, 3 invalid stack, 4 plugin, 5 numerical failure,
 6 files, 130 interrupted (the log is kept).)";
 
-std::string quotedSuggestion(const std::string& word, const std::vector<std::string>& candidates) {
-  const std::string nearest = dsl::nearestName(word, candidates);
-  return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
-}
-
 /// The command that the command line reached, e.g. `golden record`.
 const CLI::App* deepest(const CLI::App* app) {
   for (auto inner = app->get_subcommands(); !inner.empty(); inner = app->get_subcommands()) app = inner.front();
@@ -38,18 +33,24 @@ int usage(const CLI::App* command, const std::string& message) {
   return exit_usage;
 }
 
-/// Words that a command does not know, each with its nearest option.
+/// Words that a command does not know, each with the nearest option or sub-command.
 std::string describeExtras(const CLI::App* command) {
-  std::vector<std::string> options;
+  std::vector<std::string> options, commands;
   for (const CLI::Option* option : command->get_options()) {
     for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  for (const CLI::App* inner : command->get_subcommands([](const CLI::App*) { return true; })) {
+    commands.push_back(inner->get_name());
   }
   std::string message;
   for (const std::string& word : command->remaining()) {
     if (!message.empty()) message += "\n  ";
-    const bool option = word.starts_with("-");
-    message += option ? "unknown option '" + word + "'" + quotedSuggestion(word.substr(0, word.find('=')), options)
-                      : "unexpected argument '" + word + "'";
+    const bool is_option = word.starts_with("-");
+    const char* kind = is_option ? "unknown option '" : commands.empty() ? "unexpected argument '" : "unknown command '";
+    const std::string nearest = dsl::nearestName(word.substr(0, word.find('=')), is_option ? options : commands);
+    message += kind + word + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
+    // What follows a wrong command belongs to it.
+    if (!is_option && !commands.empty()) break;
   }
   return message;
 }
@@ -57,9 +58,6 @@ std::string describeExtras(const CLI::App* command) {
 int runCommand(int argc, char** argv) {
   CLI::App app("Tactus: XML stacks of contact tasks, compiled into torque controllers");
   app.name("tactus");
-  // A misspelled command would otherwise be reported as a missing one.
-  app.require_subcommand(0, 1);
-  app.allow_extras();
   app.set_version_flag("--version", "tactus " TACTUS_VERSION);
   app.footer(examples);
 
@@ -72,30 +70,25 @@ int runCommand(int argc, char** argv) {
   addGolden(app, context);
   addPlugins(app, context);
   addReport(app, context);
+  // A misspelled command would otherwise be reported as a missing one.  Commands inherit this when they are added, so
+  // it comes after them: what they do not know stays an error.
+  app.require_subcommand(0, 1);
+  app.allow_extras();
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {
     return app.exit(request, std::cout, std::cerr);
-  } catch (const CLI::ExtrasError&) {
-    const CLI::App* command = deepest(&app);
-    return usage(command, describeExtras(command));
   } catch (const CLI::ParseError& error) {
-    const CLI::App* command = deepest(&app);
     // What is missing is often only misspelled: an unknown option explains more.
-    const std::string extras = command == &app ? "" : describeExtras(command);
+    const CLI::App* command = deepest(&app);
+    const std::string extras = describeExtras(command);
     return usage(command, extras.empty() ? error.what() : extras);
   }
-  if (!app.remaining().empty()) {
-    const std::string& word = app.remaining().front();
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
-    const bool option = word.starts_with("-");
-    return usage(&app, std::string(option ? "unknown option '" : "unknown command '") + word + "'" +
-                           (option ? "" : quotedSuggestion(word, names)));
-  }
+  if (const std::string extras = describeExtras(&app); !extras.empty()) return usage(&app, extras);
   if (!context.action) {
-    std::cerr << deepest(&app)->help();
+    const CLI::App* command = deepest(&app);
+    std::cerr << command->help(command == &app ? "" : fullName(command->get_parent()));
     return exit_usage;
   }
   return reportErrors(context);

@@ -114,7 +114,7 @@ Line thinned(const Line& line, size_t buckets) {
     const size_t from = b * line.x.size() / buckets, to = (b + 1) * line.x.size() / buckets;
     const auto [least, largest] = std::minmax_element(line.y.begin() + static_cast<std::ptrdiff_t>(from),
                                                       line.y.begin() + static_cast<std::ptrdiff_t>(to));
-    const auto ends = std::minmax(least - line.y.begin(), largest - line.y.begin());
+    const auto ends = std::minmax({least - line.y.begin(), largest - line.y.begin()});
     for (const auto i : {ends.first, ends.second}) {
       thin.x.push_back(line.x[static_cast<size_t>(i)]);
       thin.y.push_back(line.y[static_cast<size_t>(i)]);

@@ -1,8 +1,20 @@
 #include "apps/tactus/stack_arguments.h"
 
+#include <charconv>
+#include <cmath>
 #include <iostream>
 
 namespace tactus::app {
+
+CLI::Validator positive() {
+  const auto check = [](std::string& text) -> std::string {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+    return number && value > 0 ? "" : "'" + text + "' is not a number greater than 0";
+  };
+  return CLI::Validator(check, "");
+}
 
 void declarePlugins(CLI::App& command, std::vector<std::string>& plugins) {
   command.add_option("--plugin", plugins, "Plugin library to load, or folder to search for plugins")
@@ -13,7 +25,7 @@ void declarePlugins(CLI::App& command, std::vector<std::string>& plugins) {
 void StackArguments::declare(CLI::App& command) {
   command.add_option("--duration", stack.duration, "Simulated time; the stack's own without it")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command.add_option("--seed", stack.seed, "Seed of the scene's jitter; the stack's own without it")->type_name("N");
   command.add_option("--set", stack.set, "Give a <parameter> of the stack another value")
       ->type_name("NAME=VALUE")

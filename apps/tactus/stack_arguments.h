@@ -15,6 +15,9 @@ struct StackArguments {
   void declare(CLI::App& command);
 };
 
+/// Accepts numbers greater than 0.
+CLI::Validator positive();
+
 /// Declares --plugin.
 void declarePlugins(CLI::App& command, std::vector<std::string>& plugins);
 

@@ -14,7 +14,7 @@ namespace tactus::control {
 
 enum class ValueType {
   text,                                                            ///< any string
-  identifier,                                                      ///< a new name: letters, digits, '_' and '-'; a letter first
+  identifier,                                              ///< a new name: letters, digits, '_' and '-'; a letter first
   flag,                                                            ///< true | false
   integer,
   real,
@@ -40,13 +40,13 @@ struct AttributeRow {
   double lower = -std::numeric_limits<double>::infinity();         ///< each number ≥ lower (> when lower_open)
   double upper = std::numeric_limits<double>::infinity();
   bool lower_open = false;
-  int count = 0;                                                   ///< numbers in `reals`, or in a group of `points`; 0 = any
-  std::vector<std::string> choices = {};                                ///< for `choice`; for joints/links: extra words, e.g. "free"
+  int count = 0;                                             ///< numbers in `reals`, or in a group of `points`; 0 = any
+  std::vector<std::string> choices = {};                   ///< for `choice`; for joints/links: extra words, e.g. "free"
   std::string port_type = {};                                           ///< for `port`
 };
 
 struct ChildRow {
-  std::string element;                                             ///< name, or "@task", "@signal", "@shape" for all of a kind
+  std::string element;                                      ///< name, or "@task", "@signal", "@shape" for all of a kind
   int min = 0;
   int max = -1;                                                    ///< -1 = any number
 };

@@ -36,7 +36,9 @@ LeastDistance::Outcome LeastDistance::solve(const ConstColumnsRef& rows, const E
   state_.head(m_).setZero();
   active_count_ = released_ = steps_ = 0;
   step_limit_ = steps_per_row * (m_ + 1);
-  tolerance_ = violation_tolerance * c.norm();
+  updateViolations(rows, d);
+  const double largest = m_ > 0 ? std::max(0.0, violations_.head(m_).maxCoeff()) : 0;
+  tolerance_ = violation_tolerance * (c.norm() + largest);
   for (int row = mostViolated(rows, d); row >= 0; row = mostViolated(rows, d)) {
     const Outcome outcome = addRow(rows, d, row, release);
     if (outcome != Outcome::solved) return outcome;
@@ -45,16 +47,20 @@ LeastDistance::Outcome LeastDistance::solve(const ConstColumnsRef& rows, const E
   return Outcome::solved;
 }
 
-int LeastDistance::mostViolated(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d) {
+void LeastDistance::updateViolations(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d) {
   auto violations = violations_.head(m_);
   violations = -d;
   for (int k = 0; k < n_; ++k) violations += x_[k] * rows.row(k).transpose();
+}
+
+int LeastDistance::mostViolated(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d) {
+  updateViolations(rows, d);
   int worst = -1;
   double largest = 0;
   for (int j = 0; j < m_; ++j) {
     const double tolerance = tolerance_ + violation_tolerance * std::abs(d[j]);
-    if (state_[j] != row_free || violations[j] <= tolerance || violations[j] <= largest) continue;
-    largest = violations[j];
+    if (state_[j] != row_free || violations_[j] <= tolerance || violations_[j] <= largest) continue;
+    largest = violations_[j];
     worst = j;
   }
   return worst;
@@ -75,9 +81,10 @@ void LeastDistance::decompose(const ConstColumnsRef& rows, int row) {
 }
 
 void LeastDistance::append(int row) {
-  Q_.col(active_count_).head(n_) = z_.head(n_).normalized();
+  const double norm = z_.head(n_).norm();
+  Q_.col(active_count_).head(n_) = z_.head(n_) / norm;
   R_.col(active_count_).head(active_count_) = projection_.head(active_count_);
-  R_(active_count_, active_count_) = z_.head(n_).norm();
+  R_(active_count_, active_count_) = norm;
   active_[active_count_++] = row;
   state_[row] = row_active;
 }

@@ -35,6 +35,7 @@ class LeastDistance {
   int steps() const { return steps_; }
 
  private:
+  void updateViolations(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d);
   int mostViolated(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d);
   Outcome addRow(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d, int row, bool release);
   void decompose(const ConstColumnsRef& rows, int row);            // b = Q (Qᵀ b) + z

@@ -25,12 +25,12 @@ PriorityFactor::PriorityFactor(int dimension, int column_capacity, int stage_cap
       options_(options),
       negligible_(negligible_ratio * options.rank_tolerance),
       memories_(stage_capacity),
-      left_(column_capacity),
+      left_(std::max(dimension, column_capacity)),
       reference_(column_capacity),
       inverse_(dimension, dimension),
       triangle_(dimension, column_capacity),
-      buffer_(dimension, column_capacity),
-      row_(column_capacity) {
+      buffer_(dimension, std::max(dimension, column_capacity)),
+      row_(std::max(dimension, column_capacity)) {
   for (Memory& memory : memories_) {
     memory.v.setZero(dimension, dimension);
     memory.beta.setZero(dimension);

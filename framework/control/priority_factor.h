@@ -36,6 +36,7 @@ class PriorityFactor {
     bool deficient = false;                                        ///< rows were dependent, or a direction is faded
   };
 
+  /// `column_capacity`: the most columns that any call brings; `dimension` of them are always allowed.
   PriorityFactor(int dimension, int column_capacity, int stage_capacity, RankOptions options);
 
   void reset() { stage_count_ = 0; }

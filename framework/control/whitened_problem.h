@@ -38,12 +38,12 @@ class WhitenedProblem {
     return columns_.middleCols(levels_[level].first_equality, levels_[level].equalities);
   }
   auto inequalities() const { return columns_.middleCols(first_inequality_, inequality_count_); }
-  const Eigen::VectorXd& norms() const { return norms_; }          ///< of the columns of A ᵀ, all rows
-  /// Index into norms() of the first equality row of a level.
-  int firstEquality(int level) const { return levels_[level].first_equality; }
+  /// All rows: equality rows level by level, then inequality rows level by level.
+  int rowCount() const { return count_; }
   int firstInequality() const { return first_inequality_; }
-  /// Where row j of `equalities` and of `inequalities` stands in the problem; j counts as norms() does.
-  const ActiveRow& origin(int j) const { return origins_[j]; }
+  auto row(int j) const { return columns_.col(j); }                ///< unit, dof
+  double norm(int j) const { return norms_[j]; }                   ///< of row j in the M⁻¹ metric, before it became unit
+  const ActiveRow& origin(int j) const { return origins_[j]; }     ///< where row j stands in the problem
 
   /// y°_i = L⁻¹ Σ JᵀF over the level's tasks.
   auto ownTorque(int level) const { return own_torques_.col(level); }

@@ -7,42 +7,42 @@ void aba(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd
   forwardKinematics(model, q, workspace);
   forwardVelocities(model, qd, workspace);
   worldInertias(model, workspace);
-  for (BodyState& state : workspace.bodies) {
-    state.articulated = state.inertia.matrix();
-    state.articulated_bias = state.velocity.cross(state.inertia * state.velocity);
+  for (int i = 0; i < model.dof(); ++i) {
+    const BodyState& body = workspace.bodies[i];
+    ArticulatedState& state = workspace.articulated[i];
+    const int parent = model.parent(i);
+    state.velocity_product =
+        parent < 0 ? MotionVector::Zero() : workspace.bodies[parent].velocity.cross(body.axis * qd[i]);
+    state.inertia = body.inertia.matrix();
+    state.bias = body.velocity.cross(body.inertia * body.velocity);
   }
 
-  // The velocity-product acceleration c_i = v_i × S_i q̇_i is what bias_acceleration gained from parent to child.
-  const auto velocityProduct = [&](int i) {
-    const int parent = model.parent(i);
-    return parent < 0 ? MotionVector::Zero()
-                      : workspace.bodies[parent].velocity.cross(workspace.bodies[i].axis * qd[i]);
-  };
-
   for (int i = model.dof() - 1; i >= 0; --i) {
-    BodyState& state = workspace.bodies[i];
-    state.axis_force.coordinates.noalias() = state.articulated * state.axis.coordinates;
-    state.axis_inertia = state.axis.dot(state.axis_force);
-    state.axis_torque = tau[i] - state.axis.dot(state.articulated_bias);
+    const MotionVector& S = workspace.bodies[i].axis;
+    ArticulatedState& state = workspace.articulated[i];
+    const Vector6d U = state.inertia * S.coordinates();
+    state.axis_force = ForceVector(U);
+    state.axis_inertia = S.dot(state.axis_force);
+    state.axis_torque = tau[i] - S.dot(state.bias);
     const int parent = model.parent(i);
     if (parent < 0) continue;
-    BodyState& before = workspace.bodies[parent];
-    const Vector6d& U = state.axis_force.coordinates;
+    // Iᵃ = Iᴬ − U D⁻¹ Uᵀ and pᵃ = pᴬ + Iᵃ c + U D⁻¹ u go to the parent.
+    ArticulatedState& before = workspace.articulated[parent];
     const Vector6d U_by_D = U / state.axis_inertia;
-    state.articulated.noalias() -= U * U_by_D.transpose();         // Iᵃ, (7.45)
-    before.articulated += state.articulated;
-    before.articulated_bias.coordinates += state.articulated_bias.coordinates +
-                                           state.articulated * velocityProduct(i).coordinates +
-                                           U_by_D * state.axis_torque;
+    before.inertia += state.inertia - U.lazyProduct(U_by_D.transpose());
+    const MotionVector& c = state.velocity_product;
+    const Vector6d force = state.inertia * c.coordinates() + U_by_D * (state.axis_torque - c.dot(state.axis_force));
+    before.bias += state.bias + ForceVector(force);
   }
 
   const MotionVector base(-gravity_W, Eigen::Vector3d::Zero());
   for (int i = 0; i < model.dof(); ++i) {
-    BodyState& state = workspace.bodies[i];
+    BodyState& body = workspace.bodies[i];
+    const ArticulatedState& state = workspace.articulated[i];
     const int parent = model.parent(i);
-    const MotionVector a = (parent < 0 ? base : workspace.bodies[parent].acceleration) + velocityProduct(i);
+    const MotionVector a = (parent < 0 ? base : workspace.bodies[parent].acceleration) + state.velocity_product;
     qdd[i] = (state.axis_torque - a.dot(state.axis_force)) / state.axis_inertia;
-    state.acceleration = a + state.axis * qdd[i];
+    body.acceleration = a + body.axis * qdd[i];
   }
 }
 

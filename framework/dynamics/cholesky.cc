@@ -9,7 +9,7 @@ bool choleskyFactor(const Eigen::MatrixXd& M, Eigen::MatrixXd& L) {
   for (Eigen::Index j = 0; j < n; ++j) {
     auto column = L.col(j).tail(n - j);
     column = M.col(j).tail(n - j);
-    for (Eigen::Index k = 0; k < j; ++k) column.noalias() -= L(j, k) * L.col(k).tail(n - j);
+    column.noalias() -= L.block(j, 0, n - j, j) * L.row(j).head(j).transpose();
     if (!(column[0] > 0)) return false;
     const double diagonal = std::sqrt(column[0]);
     column[0] = diagonal;

@@ -10,14 +10,14 @@ void compositeInertias(const Model& model, Workspace& workspace) {
   }
 }
 
-void massMatrixSweep(const Model& model, const Workspace& workspace, Eigen::MatrixXd& M) {
+void massMatrixSweep(const Model& model, Workspace& workspace, Eigen::MatrixXd& M) {
   for (int i = 0; i < model.dof(); ++i) {
-    const BodyState& state = workspace.bodies[i];
-    const ForceVector F = state.composite * state.axis;
-    M(i, i) = state.axis.dot(F);
-    for (int j = model.parent(i); j >= 0; j = model.parent(j)) {
-      M(i, j) = M(j, i) = workspace.bodies[j].axis.dot(F);
-    }
+    workspace.composite_forces[i] = workspace.bodies[i].composite * workspace.bodies[i].axis;
+  }
+  // M_ij = S_jᵀ Iᶜ_i S_i for all i in the subtree of j, which is one stretch of column j.
+  for (int j = 0; j < model.dof(); ++j) {
+    const MotionVector S = workspace.bodies[j].axis;
+    for (int i = j; i < model.subtreeEnd(j); ++i) M(i, j) = M(j, i) = S.dot(workspace.composite_forces[i]);
   }
 }
 

@@ -13,6 +13,6 @@ void crba(const Model& model, const Eigen::VectorXd& q, Workspace& workspace, Ei
 /// Inertia of every subtree: composite.  After worldInertias.
 void compositeInertias(const Model& model, Workspace& workspace);
 /// Writes the entries of M that can be other than zero: joints on one path from the base.  After compositeInertias.
-void massMatrixSweep(const Model& model, const Workspace& workspace, Eigen::MatrixXd& M);
+void massMatrixSweep(const Model& model, Workspace& workspace, Eigen::MatrixXd& M);
 
 }  // namespace tactus::dynamics

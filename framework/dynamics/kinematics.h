@@ -24,21 +24,30 @@ struct BodyState {
   MotionVector axis;                                               ///< S, joint axis
   MotionVector velocity;                                           ///< v
   MotionVector bias_acceleration;                                  ///< a when q̈ = 0, without gravity: J̇ q̇
+  MotionVector acceleration;                                       ///< a, gravity as an acceleration of the base
+  ForceVector force;                                               ///< f, through the joint
   RigidBodyInertia inertia;                                        ///< I
   RigidBodyInertia composite;                                      ///< Iᶜ, of the subtree
-  ForceVector force;                                               ///< f, through the joint
-  Matrix6d articulated;                                            ///< Iᴬ
-  ForceVector articulated_bias;                                    ///< pᴬ
+};
+
+/// What the articulated-body algorithm needs besides, Featherstone (2008), section 7.3.
+struct ArticulatedState {
+  Matrix6d inertia;                                                ///< Iᴬ
+  ForceVector bias;                                                ///< pᴬ
+  MotionVector velocity_product;                                   ///< c = v × S q̇
   ForceVector axis_force;                                          ///< U = Iᴬ S
-  MotionVector acceleration;                                       ///< a
   double axis_inertia;                                             ///< D = Sᵀ U
   double axis_torque;                                              ///< u = τ − Sᵀ pᴬ
 };
 
 /// Memory of the algorithms for one model, taken once.
 struct Workspace {
-  explicit Workspace(const Model& model) : bodies(model.dof()) {}
+  explicit Workspace(const Model& model)
+      : bodies(model.dof()), articulated(model.dof()), composite_forces(model.dof()) {}
+
   std::vector<BodyState> bodies;
+  std::vector<ArticulatedState> articulated;
+  std::vector<ForceVector> composite_forces;                       ///< Iᶜ S of each body
 };
 
 /// Poses and joint axes: R_WB, p_WB, axis.

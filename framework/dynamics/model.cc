@@ -75,6 +75,10 @@ Model::Model(const description::Robot& robot, MassPolicy policy) {
     }
   }
 
+  for (Body& body : bodies_) {
+    body.centre_of_mass = body.inertia.centreOfMass();
+    body.central_inertia = body.inertia.inertiaAboutCentreOfMass();
+  }
   subtree_ends_.resize(bodies_.size());
   for (int i = 0; i < dof(); ++i) {
     subtree_ends_[i] = i + 1;

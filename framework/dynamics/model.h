@@ -37,6 +37,8 @@ class Model {
     description::JointType type = description::JointType::revolute;
     Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();      ///< in the parent body's frame at q = 0
     RigidBodyInertia inertia;                                      ///< merged links and rotor, body frame
+    Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();      ///< the same inertia about the centre of mass:
+    Eigen::Matrix3d central_inertia = Eigen::Matrix3d::Zero();     ///< kg m², body axes
   };
   /// A link of the description, wherever it is carried.
   struct Frame {

@@ -1,5 +1,6 @@
 #include "framework/dynamics/operational_space.h"
 
+#include <Eigen/Householder>
 #include <algorithm>
 #include <numeric>
 
@@ -20,6 +21,7 @@ void OperationalSpace::compute(const Eigen::Ref<const Eigen::MatrixXd>& J, const
                                const OperationalSpaceOptions& options) {
   rows_ = static_cast<int>(J.rows());
   rank_ = 0;
+  if (rows_ == 0) return;
   auto A_T = transposed_.leftCols(rows_);
   A_T = J.transpose();
   mass_factor.triangularView<Eigen::Lower>().solveInPlace(A_T);    // Aᵀ = L⁻¹ Jᵀ

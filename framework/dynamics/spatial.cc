@@ -44,23 +44,23 @@ Matrix6d RigidBodyInertia::matrix() const {
 }
 
 RigidBodyInertia RigidBodyInertia::transformed(const Eigen::Matrix3d& R_AB, const Eigen::Vector3d& p_AB) const {
-  RigidBodyInertia I_A;
-  const Eigen::Vector3d rotated_moment = R_AB * first_moment;
-  I_A.mass = mass;
-  I_A.first_moment = rotated_moment + mass * p_AB;
   // The parallel-axis theorem for an inertia that is not about the centre of mass, with k = R h + m p / 2:
-  // I_A = R I Rᵀ + 2 (p·k) 1 − k pᵀ − p kᵀ.
+  // I_A = R I Rᵀ + 2 (p·k) 1 − k pᵀ − p kᵀ.  Column by column: so it becomes packed arithmetic.
+  const Eigen::Matrix3d &R = R_AB, &I = rotational;
   const Eigen::Vector3d& p = p_AB;
+  const Eigen::Vector3d rotated_moment = R * first_moment;
   const Eigen::Vector3d k = rotated_moment + 0.5 * mass * p;
-  const Eigen::Matrix3d RI = R_AB * rotational;
-  const double kx_px = 2 * k.x() * p.x(), ky_py = 2 * k.y() * p.y(), kz_pz = 2 * k.z() * p.z();
-  Eigen::Matrix3d& I = I_A.rotational;
-  I(0, 0) = RI.row(0).dot(R_AB.row(0)) + ky_py + kz_pz;
-  I(1, 1) = RI.row(1).dot(R_AB.row(1)) + kx_px + kz_pz;
-  I(2, 2) = RI.row(2).dot(R_AB.row(2)) + kx_px + ky_py;
-  I(1, 0) = I(0, 1) = RI.row(1).dot(R_AB.row(0)) - k.x() * p.y() - k.y() * p.x();
-  I(2, 0) = I(0, 2) = RI.row(2).dot(R_AB.row(0)) - k.x() * p.z() - k.z() * p.x();
-  I(2, 1) = I(1, 2) = RI.row(2).dot(R_AB.row(1)) - k.y() * p.z() - k.z() * p.y();
+  const Eigen::Vector3d RI_0 = R.col(0) * I(0, 0) + R.col(1) * I(1, 0) + R.col(2) * I(2, 0);
+  const Eigen::Vector3d RI_1 = R.col(0) * I(0, 1) + R.col(1) * I(1, 1) + R.col(2) * I(2, 1);
+  const Eigen::Vector3d RI_2 = R.col(0) * I(0, 2) + R.col(1) * I(1, 2) + R.col(2) * I(2, 2);
+  const double twice_pk = 2 * p.dot(k);
+  RigidBodyInertia I_A;
+  I_A.mass = mass;
+  I_A.first_moment = rotated_moment + mass * p;
+  for (int j = 0; j < 3; ++j) {
+    I_A.rotational.col(j) = RI_0 * R(j, 0) + RI_1 * R(j, 1) + RI_2 * R(j, 2) - k * p[j] - p * k[j];
+    I_A.rotational(j, j) += twice_pk;
+  }
   return I_A;
 }
 

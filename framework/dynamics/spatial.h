@@ -13,61 +13,70 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /// A spatial force, an element of F⁶.
-struct ForceVector {
-  Vector6d coordinates;
-
+class ForceVector {
+ public:
   ForceVector() = default;
-  explicit ForceVector(const Vector6d& coordinates) : coordinates(coordinates) {}
-  ForceVector(const Eigen::Vector3d& force, const Eigen::Vector3d& moment) { coordinates << force, moment; }
-  static ForceVector Zero() { return ForceVector(Vector6d::Zero()); }
+  ForceVector(const Eigen::Vector3d& force, const Eigen::Vector3d& moment) : force_(force), moment_(moment) {}
+  explicit ForceVector(const Vector6d& coordinates) : force_(coordinates.head<3>()), moment_(coordinates.tail<3>()) {}
+  static ForceVector Zero() { return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
 
-  auto force() const { return coordinates.head<3>(); }
-  auto moment() const { return coordinates.tail<3>(); }
+  const Eigen::Vector3d& force() const { return force_; }
+  const Eigen::Vector3d& moment() const { return moment_; }
+  Vector6d coordinates() const { return (Vector6d() << force_, moment_).finished(); }
 
   ForceVector& operator+=(const ForceVector& other) {
-    coordinates += other.coordinates;
+    force_ += other.force_;
+    moment_ += other.moment_;
     return *this;
   }
   friend ForceVector operator+(const ForceVector& a, const ForceVector& b) {
-    return ForceVector(Vector6d(a.coordinates + b.coordinates));
+    return {a.force_ + b.force_, a.moment_ + b.moment_};
   }
+
+ private:
+  Eigen::Vector3d force_, moment_;
 };
 
 /// A spatial velocity or acceleration, an element of M⁶.
-struct MotionVector {
-  Vector6d coordinates;
-
+class MotionVector {
+ public:
   MotionVector() = default;
-  explicit MotionVector(const Vector6d& coordinates) : coordinates(coordinates) {}
-  MotionVector(const Eigen::Vector3d& linear, const Eigen::Vector3d& angular) { coordinates << linear, angular; }
-  static MotionVector Zero() { return MotionVector(Vector6d::Zero()); }
+  MotionVector(const Eigen::Vector3d& linear, const Eigen::Vector3d& angular) : linear_(linear), angular_(angular) {}
+  explicit MotionVector(const Vector6d& coordinates)
+      : linear_(coordinates.head<3>()), angular_(coordinates.tail<3>()) {}
+  static MotionVector Zero() { return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
 
-  auto linear() const { return coordinates.head<3>(); }
-  auto angular() const { return coordinates.tail<3>(); }
+  const Eigen::Vector3d& linear() const { return linear_; }
+  const Eigen::Vector3d& angular() const { return angular_; }
+  Vector6d coordinates() const { return (Vector6d() << linear_, angular_).finished(); }
 
   /// Velocity of the body point now at p.
-  Eigen::Vector3d at(const Eigen::Vector3d& p) const { return linear() + angular().cross(p); }
+  Eigen::Vector3d at(const Eigen::Vector3d& p) const { return linear_ + angular_.cross(p); }
 
   /// Scalar product M⁶ × F⁶: power, when this is a velocity.
-  double dot(const ForceVector& f) const { return coordinates.dot(f.coordinates); }
+  double dot(const ForceVector& f) const { return linear_.dot(f.force()) + angular_.dot(f.moment()); }
 
   /// v × m, (2.33): rate of change of m when it is fixed to a body that moves with v.
   MotionVector cross(const MotionVector& m) const {
-    return {angular().cross(m.linear()) + linear().cross(m.angular()), angular().cross(m.angular())};
+    return {angular_.cross(m.linear_) + linear_.cross(m.angular_), angular_.cross(m.angular_)};
   }
   /// v ×* f, (2.34).
   ForceVector cross(const ForceVector& f) const {
-    return {angular().cross(f.force()), angular().cross(f.moment()) + linear().cross(f.force())};
+    return {angular_.cross(f.force()), angular_.cross(f.moment()) + linear_.cross(f.force())};
   }
 
   MotionVector& operator+=(const MotionVector& other) {
-    coordinates += other.coordinates;
+    linear_ += other.linear_;
+    angular_ += other.angular_;
     return *this;
   }
   friend MotionVector operator+(const MotionVector& a, const MotionVector& b) {
-    return MotionVector(Vector6d(a.coordinates + b.coordinates));
+    return {a.linear_ + b.linear_, a.angular_ + b.angular_};
   }
-  friend MotionVector operator*(const MotionVector& m, double s) { return MotionVector(Vector6d(m.coordinates * s)); }
+  friend MotionVector operator*(const MotionVector& m, double s) { return {m.linear_ * s, m.angular_ * s}; }
+
+ private:
+  Eigen::Vector3d linear_, angular_;
 };
 
 /// The Plücker transform of a pose X_AB: takes the coordinates of vectors given in B to A (2.24, 2.25).

@@ -51,21 +51,7 @@ const PluginDescriptor* openLibrary(const std::string& path) {
   return reinterpret_cast<const PluginDescriptor* (*)()>(symbol)();
 }
 
-void registerInto(control::Registry& registry, const PluginDescriptor& descriptor, const std::string& path) {
-  const std::string failed = std::string("registration of plugin '") + descriptor.name + "' failed, nothing of it is kept: ";
-  control::Registry enlarged = registry;
-  try {
-    descriptor.register_elements(enlarged);
-  } catch (const std::exception& error) {
-    refuse(path, failed + error.what());
-  } catch (...) {
-    refuse(path, failed + "it threw something that is not a std::exception");
-  }
-  registry = std::move(enlarged);
-}
-
-}  // namespace
-
+/// Refuses a descriptor that does not fit this program; says both values.
 void checkDescriptor(const PluginDescriptor* descriptor, const std::string& path) {
   if (!descriptor) refuse(path, "its entry function returned no descriptor");
   if (descriptor->magic != plugin_magic) {
@@ -108,6 +94,21 @@ void checkDescriptor(const PluginDescriptor* descriptor, const std::string& path
   if (!descriptor->register_elements) refuse(path, "its descriptor has no register function");
 }
 
+void registerInto(control::Registry& registry, const PluginDescriptor& descriptor, const std::string& path) {
+  const std::string failed = std::string("registration of plugin '") + descriptor.name + "' failed, nothing of it is kept: ";
+  control::Registry enlarged = registry;
+  try {
+    descriptor.register_elements(enlarged);
+  } catch (const std::exception& error) {
+    refuse(path, failed + error.what());
+  } catch (...) {
+    refuse(path, failed + "it threw something that is not a std::exception");
+  }
+  registry = std::move(enlarged);
+}
+
+}  // namespace
+
 PluginLoader::PluginLoader(control::Registry& registry, std::vector<std::string> folders)
     : registry_(registry), folders_(std::move(folders)) {}
 
@@ -117,7 +118,9 @@ const LoadedPlugin* PluginLoader::find(const std::string& name) const {
   return found == loaded_.end() ? nullptr : &*found;
 }
 
-const LoadedPlugin& PluginLoader::loadFile(const std::string& path) {
+const LoadedPlugin& PluginLoader::loadFile(const std::string& path) { return load(path, ""); }
+
+const LoadedPlugin& PluginLoader::load(const std::string& path, const std::string& expected_name) {
   std::error_code error;
   const fs::path real = fs::canonical(path, error);
   const std::string library = error ? path : real.string();
@@ -127,6 +130,9 @@ const LoadedPlugin& PluginLoader::loadFile(const std::string& path) {
 
   const PluginDescriptor* descriptor = openLibrary(library);
   checkDescriptor(descriptor, library);
+  if (!expected_name.empty() && descriptor->name != expected_name) {
+    refuse(library, std::string("it calls itself '") + descriptor->name + "', not '" + expected_name + "'");
+  }
   if (const LoadedPlugin* other = find(descriptor->name)) {
     refuse(library, "the name '" + other->name + "' is taken by " + other->path + "; name only one of the two");
   }
@@ -156,9 +162,7 @@ const LoadedPlugin& PluginLoader::loadNamed(const std::string& name) {
     }
     // The first file of that name decides: a broken one is told, not passed over for another.
     try {
-      const LoadedPlugin& plugin = loadFile(path);
-      if (plugin.name != name) refuse(path, "it calls itself '" + plugin.name + "', not '" + name + "'");
-      return plugin;
+      return load(path, name);
     } catch (const PluginError& refusal) {
       throw PluginError("plugin '" + name + "' cannot be used; tried:" + tried + "\n  " + path + ": refused\n" +
                         refusal.what());

@@ -49,13 +49,12 @@ class PluginLoader {
 
  private:
   const LoadedPlugin* find(const std::string& name) const;
+  /// `expected_name` is what the library must call itself; "" = any.
+  const LoadedPlugin& load(const std::string& path, const std::string& expected_name);
 
   control::Registry& registry_;
   std::vector<std::string> folders_;
   std::deque<LoadedPlugin> loaded_;                                ///< a deque: references to its entries stay valid
 };
-
-/// Throws PluginError when the descriptor of the library at `path` does not fit this program; says both values.
-void checkDescriptor(const PluginDescriptor* descriptor, const std::string& path);
 
 }  // namespace tactus::runtime

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/control/level_ranks.h"
 #include "framework/control/torque_scaling.h"
 
 namespace tactus::null_space {
@@ -44,19 +45,7 @@ void NullSpace::doPrepare(const TickProblem& shape) { work_ = std::make_unique<W
 
 void NullSpace::doSolve(const TickProblem& problem, TickSolution& solution) {
   Workspace& work = *work_;
-  solution.status = Status::ok;
-  solution.message.clear();
-  solution.rows_held = solution.rows_released = solution.rank_deficient_levels = 0;
-  solution.iterations = 0;
-  solution.n_contact_forces = 0;
-  solution.scale = 1;
-  for (control::LevelReport& level : solution.levels) {
-    level.active.clear();
-    level.rank = 0;
-    level.nullity = problem.dof;
-    level.residual = 0;
-  }
-  solution.torque.setZero();
+  control::resetSolution(problem, solution);
   if (!work.problem.update(problem)) {
     solution.status = Status::failed;
     solution.message = "the mass matrix is not positive definite, or a Jacobian or force is not finite";
@@ -97,7 +86,7 @@ void NullSpace::augmented(TickSolution& solution) {
     auto rows = work.rows.leftCols(work.problem.equalityRows(i));
     rows = work.problem.equalities(i);
     work.chain.advance(rows);
-    report(work.chain.hold(rows), i, solution);
+    control::LevelRanks::write(work.chain.hold(rows), i, work.problem.dof(), solution);
     if (i + 1 < levels) work.chain.advance(i, inequalities);
   }
 }
@@ -110,7 +99,7 @@ void NullSpace::successive(TickSolution& solution) {
     auto rows = work.rows.leftCols(work.problem.equalityRows(i));
     rows = work.problem.equalities(i);
     work.chain.advance(rows);
-    report(work.chain.hold(rows), i, solution);
+    control::LevelRanks::write(work.chain.hold(rows), i, work.problem.dof(), solution);
   }
   for (int i = levels - 1; i >= 0; --i) {
     if (i + 1 < levels) {
@@ -151,14 +140,6 @@ void NullSpace::project(PriorityFactor& factor, int first_inequality, int inequa
     const auto same = [&](const ActiveRow& other) { return other.task == row.task && other.row == row.row; };
     if (std::none_of(active.begin(), active.end(), same)) active.push_back(row);
   }
-}
-
-void NullSpace::report(const PriorityFactor::Stage& stage, int level, TickSolution& solution) {
-  const int before = level == 0 ? work_->problem.dof() : solution.levels[level - 1].nullity;
-  // A direction that is faded can be seen by two levels; it is granted once.
-  solution.levels[level].rank = std::min(stage.rank, before);
-  solution.levels[level].nullity = before - solution.levels[level].rank;
-  if (stage.deficient) ++solution.rank_deficient_levels;
 }
 
 }  // namespace tactus::null_space

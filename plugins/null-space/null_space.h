@@ -46,7 +46,6 @@ class NullSpace final : public control::BackEnd {
   void successive(control::TickSolution& solution);
   void project(control::PriorityFactor& factor, int first_inequality, int inequalities,
                control::TickSolution& solution);
-  void report(const control::PriorityFactor::Stage& stage, int level, control::TickSolution& solution);
 
   NullSpaceOptions options_;
   std::unique_ptr<Workspace> work_;

@@ -149,7 +149,7 @@ TEST(CheckRobot, JointNumbers) {
   expectError([](Robot& robot) { robot.joints[1].friction = -1; },
               "joint 'elbow': its friction is -1; it must be a number of at least 0", 21);
   expectError([](Robot& robot) { robot.joints[0].rotor_inertia = -1e-4; },
-              "joint 'shoulder': its rotor inertia is -0.0001; it must be a number of at least 0", 20);
+              "joint 'shoulder': its rotor inertia is -1e-04; it must be a number of at least 0", 20);
 }
 
 TEST(CheckRobot, NumbersMatterForKinematicsToo) {

@@ -47,7 +47,9 @@ TEST(Crba, JointsOnDifferentBranchesDoNotMeet) {
     const Eigen::MatrixXd M = massMatrix(state);
     for (int i = 0; i < state.model.dof(); ++i) {
       for (int j = 0; j < i; ++j) {
-        if (i >= state.model.subtreeEnd(j)) EXPECT_EQ(M(i, j), 0);
+        if (i >= state.model.subtreeEnd(j)) {
+          EXPECT_EQ(M(i, j), 0);
+        }
       }
     }
   });

@@ -48,14 +48,14 @@ Eigen::MatrixXd gram(const Eigen::MatrixXd& J, const Eigen::MatrixXd& L) {
 TEST(OperationalSpace, IndependentRowsHaveTheInverse) {
   Random random(91);
   for (int trial = 0; trial < 200; ++trial) {
-    const int dof = 1 + static_cast<int>(random() % 40), m = static_cast<int>(random() % (std::min(dof, 12) + 1));
+    const int dof = 1 + static_cast<int>(random() % 40), m = 1 + static_cast<int>(random() % std::min(dof, 12));
     const Eigen::MatrixXd L = randomFactor(random, dof);
     const Rows rows = randomRows(random, dof, m, 0);
     OperationalSpace space(12, dof);
     space.compute(rows.J, L);
     EXPECT_EQ(space.rank(), m);
     const Eigen::MatrixXd product = gram(rows.J, L) * space.inertia();
-    const double condition = m == 0 ? 1 : gram(rows.J, L).norm() * Eigen::MatrixXd(space.inertia()).norm();
+    const double condition = gram(rows.J, L).norm() * Eigen::MatrixXd(space.inertia()).norm();
     EXPECT_TRUE(near(product, Eigen::MatrixXd::Identity(m, m), 1e-14 * (1 + condition)));
   }
 }
@@ -65,7 +65,8 @@ TEST(OperationalSpace, DependentRowsHaveAGeneralisedInverse) {
   int deficient = 0;
   for (int trial = 0; trial < 300; ++trial) {
     const int dof = 3 + static_cast<int>(random() % 38);
-    const int independent = 1 + static_cast<int>(random() % std::min(dof, 9)), dependent = static_cast<int>(random() % 6);
+    const int independent = 1 + static_cast<int>(random() % std::min(dof, 9));
+    const int dependent = static_cast<int>(random() % 6);
     const Eigen::MatrixXd L = randomFactor(random, dof);
     const Rows rows = randomRows(random, dof, independent, dependent);
     OperationalSpace space(15, dof);
@@ -124,6 +125,13 @@ TEST(OperationalSpace, ToleranceDecidesTheRank) {
   space.compute(Eigen::MatrixXd::Zero(2, 3), L);
   EXPECT_EQ(space.rank(), 0);
   EXPECT_EQ(Eigen::MatrixXd(space.inertia()), Eigen::MatrixXd::Zero(2, 2));
+}
+
+TEST(OperationalSpace, NoRowsAreNoTrouble) {
+  OperationalSpace space(3, 5);
+  space.compute(Eigen::MatrixXd(0, 5), Eigen::MatrixXd::Identity(5, 5));
+  EXPECT_EQ(space.rank(), 0);
+  EXPECT_EQ(space.inertia().size(), 0);
 }
 
 TEST(OperationalSpace, ManyContactsOnOneFingerHaveTheRankOfItsJoints) {

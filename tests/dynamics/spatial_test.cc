@@ -43,8 +43,8 @@ TEST(Spatial, TransformsKeepPowerAndCompose) {
     const MotionVector m(random6(random));
     const ForceVector f(random6(random));
     EXPECT_NEAR(transform(X, m).dot(transform(X, f)), m.dot(f), 1e-12);
-    EXPECT_TRUE(near(transform(X * Y, m).coordinates, transform(X, transform(Y, m)).coordinates, 1e-13));
-    EXPECT_TRUE(near(transform(X * Y, f).coordinates, transform(X, transform(Y, f)).coordinates, 1e-13));
+    EXPECT_TRUE(near(transform(X * Y, m).coordinates(), transform(X, transform(Y, m)).coordinates(), 1e-13));
+    EXPECT_TRUE(near(transform(X * Y, f).coordinates(), transform(X, transform(Y, f)).coordinates(), 1e-13));
   }
 }
 
@@ -65,10 +65,10 @@ TEST(Spatial, CrossProductsAreRatesOfTransforms) {
     const MotionVector v(random6(random)), m(random6(random));
     const ForceVector f(random6(random));
     const Eigen::Isometry3d after = smallMotion(v, t), before = smallMotion(v, -t);
-    const Vector6d motion_rate = (transform(after, m).coordinates - transform(before, m).coordinates) / (2 * t);
-    const Vector6d force_rate = (transform(after, f).coordinates - transform(before, f).coordinates) / (2 * t);
-    EXPECT_TRUE(near(v.cross(m).coordinates, motion_rate, 1e-8));
-    EXPECT_TRUE(near(v.cross(f).coordinates, force_rate, 1e-8));
+    const Vector6d motion_rate = (transform(after, m).coordinates() - transform(before, m).coordinates()) / (2 * t);
+    const Vector6d force_rate = (transform(after, f).coordinates() - transform(before, f).coordinates()) / (2 * t);
+    EXPECT_TRUE(near(v.cross(m).coordinates(), motion_rate, 1e-8));
+    EXPECT_TRUE(near(v.cross(f).coordinates(), force_rate, 1e-8));
     // (2.30): the power of f on m does not change when both are carried along.
     EXPECT_NEAR(v.cross(m).dot(f) + m.dot(v.cross(f)), 0, 1e-12);
   }
@@ -81,9 +81,9 @@ TEST(Spatial, InertiaKeepsItsEnergyInEveryFrame) {
     const RigidBodyInertia I = randomInertia(random);
     const MotionVector v(random6(random));
     const MotionVector v_A = transform(X, v);
-    EXPECT_TRUE(near((I.transformed(X) * v_A).coordinates, transform(X, I * v).coordinates, 1e-12));
+    EXPECT_TRUE(near((I.transformed(X) * v_A).coordinates(), transform(X, I * v).coordinates(), 1e-12));
     EXPECT_NEAR(v_A.dot(I.transformed(X) * v_A), v.dot(I * v), 1e-12 * (1 + v.dot(I * v)));
-    EXPECT_TRUE(near(I.matrix() * v.coordinates, (I * v).coordinates, 1e-14));
+    EXPECT_TRUE(near(I.matrix() * v.coordinates(), (I * v).coordinates(), 1e-14));
     EXPECT_TRUE(near(I.transformed(X).transformed(X.inverse()).matrix(), I.matrix(), 1e-12));
   }
 }
@@ -110,7 +110,7 @@ TEST(Spatial, InertiasAddUp) {
     const MotionVector v(random6(random));
     RigidBodyInertia sum = a;
     sum += b;
-    EXPECT_TRUE(near((sum * v).coordinates, (a * v + b * v).coordinates, 1e-13));
+    EXPECT_TRUE(near((sum * v).coordinates(), (a * v + b * v).coordinates(), 1e-13));
     EXPECT_TRUE(near(sum.centreOfMass(), (a.first_moment + b.first_moment) / (a.mass + b.mass), 1e-14));
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -88,6 +89,40 @@ class ProblemSource {
     }
     task.has_acceleration = chance(options.acceleration_share);
     return task;
+  }
+
+  /// Level 1 holds contacts alone, equality and inequality ones; the others hold equality tasks, or as `options` say.
+  control::TickProblem contactProblem(const RandomProblemOptions& options, double negative_share = 0,
+                                      double friction_share = 0) {
+    control::TickProblem problem = this->problem(options);
+    problem.levels[0].tasks.clear();
+    for (const control::Relation relation : {control::Relation::equality, control::Relation::inequality}) {
+      const bool cones = relation == control::Relation::equality && chance(friction_share);
+      control::TickTask contacts = task(relation == control::Relation::equality ? "held" : "shy", problem.dof, options);
+      contacts.has_acceleration = false;
+      if (cones) {
+        contacts = control::TickTask("held", 3, problem.dof);
+        contacts.rows = 3;
+        contacts.jacobian = gaussian(3, problem.dof);
+        contacts.force = Eigen::Vector3d(std::abs(normal()), normal(), normal());
+        contacts.friction = uniform(0.2, 1);
+      } else {
+        contacts.force = contacts.force.cwiseAbs();
+        if (chance(negative_share)) contacts.force[0] *= -1;
+      }
+      contacts.relation = relation;
+      contacts.contact = true;
+      problem.levels[0].tasks.push_back(contacts);
+    }
+    return problem;
+  }
+
+  /// Limits around zero that cut some of the torques.
+  control::TorqueLimits limits(int dof, double size) {
+    control::TorqueLimits limits;
+    limits.lower = -size * gaussian(dof, 1).cwiseAbs();
+    limits.upper = size * gaussian(dof, 1).cwiseAbs();
+    return limits;
   }
 
   /// Forgets the rows that later tasks may repeat.

@@ -16,7 +16,8 @@ const Eigen::Vector3d kDown(0, 0, -1);
 class ContactsSignal : public ::testing::Test {
  protected:
   TaskWorld world;
-  void makeTouch(const Attributes& attributes) {
+  void makeTouch(Attributes attributes) {
+    attributes.insert({"name", "touch"});
     values = control::makeValues(*world.registry.elements().find("contacts"), attributes);
     world.touch = world.registry.makeSignal(world.context(values));
   }

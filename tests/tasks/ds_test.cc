@@ -45,7 +45,7 @@ class PassiveDs {
     std::ostringstream tank_text;
     tank_text << tank;
     values_ = control::makeValues(*registry_.elements().find("ds"),
-                                  {{"frame", "z"}, {"target", "0 0 0"}, {"matrix", matrix},
+                                  {{"name", "field"}, {"frame", "z"}, {"target", "0 0 0"}, {"matrix", matrix},
                                    {"damping-along", std::to_string(lambda)}, {"damping-across", std::to_string(lambda)},
                                    {"tank", tank_text.str()}, {"tank-max", "1"}});
     const control::BuildContext context(values_, robot_, model_, dt,

@@ -44,7 +44,7 @@ class TaskWorld {
     tasks::registerBuiltIns(registry);
     sensed.q = handOverTable();
     sensed.qd = Eigen::VectorXd::Zero(model.dof());
-    touch_values_ = control::makeValues(*registry.elements().find("contacts"), {{"desired", "fingers"}, {"hold", "0"}});
+    touch_values_ = control::makeValues(*registry.elements().find("contacts"), {{"name", "touch"}, {"desired", "fingers"}, {"hold", "0"}});
     touch = registry.makeSignal(context(touch_values_));
   }
 
@@ -55,7 +55,8 @@ class TaskWorld {
                                  });
   }
 
-  std::unique_ptr<control::Task> make(const std::string& type, const Attributes& attributes) {
+  std::unique_ptr<control::Task> make(const std::string& type, Attributes attributes) {
+    attributes.insert({"name", "task"});
     values_.push_back(
         std::make_unique<control::ElementValues>(control::makeValues(*registry.elements().find(type), attributes)));
     return registry.makeTask(context(*values_.back()));

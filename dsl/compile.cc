@@ -1,0 +1,265 @@
+#include "dsl/compile.h"
+
+#include <algorithm>
+#include <map>
+
+#include "dsl/codes.h"
+#include "dsl/nearest_name.h"
+#include "dsl/source_text.h"
+
+namespace tactus::dsl {
+namespace {
+
+using control::ElementError;
+using control::ElementValues;
+using description::Place;
+
+/// Leaves a factory whose signal failed: the reason has been told already.
+struct SignalFailed {};
+
+const Code& unknownNameOf(control::ValueType type) {
+  switch (type) {
+    case control::ValueType::link:
+    case control::ValueType::links: return code::unknown_link;
+    case control::ValueType::joints: return code::unknown_joint;
+    case control::ValueType::object: return code::unknown_object;
+    case control::ValueType::port: return code::unknown_port;
+    default: return code::refused_by_factory;
+  }
+}
+
+/// Findings about a stack whose text is kept only as a string.
+class CompileErrors {
+ public:
+  explicit CompileErrors(const Stack& stack) : stack_(stack) {}
+
+  void add(const Code& code, const Place& place, int length, const std::string& path, const std::string& message,
+           const std::string& suggestion = "") {
+    Diagnostic diagnostic;
+    diagnostic.code = code.id;
+    diagnostic.message = message;
+    diagnostic.place = place;
+    diagnostic.length = std::max(1, length);
+    diagnostic.suggestion = suggestion;
+    diagnostic.path = path;
+    if (const auto file = stack_.files.find(place.file); file != stack_.files.end())
+      diagnostic.source_line = SourceText(place.file, file->second).lineAt(place.line);
+    if (const auto way = stack_.included_from.find(place.file); way != stack_.included_from.end())
+      diagnostic.included_from = way->second;
+    found_.push_back(std::move(diagnostic));
+  }
+
+  /// At an attribute's value where it is written, else at the element.
+  void addAt(const Code& code, const ElementInstance& element, const std::string& attribute, const std::string& message,
+             const std::string& suggestion = "") {
+    if (!attribute.empty() && element.values.has(attribute)) {
+      const control::Value& value = element.values.value(attribute);
+      if (value.origin.place.line > 0)
+        return add(code, value.origin.place, countCharacters(value.text), element.path, message, suggestion);
+    }
+    add(code, element.place, countCharacters(element.values.row().name) + 1, element.path, message, suggestion);
+  }
+
+  void addElementError(const ElementInstance& element, const ElementError& error) {
+    const control::AttributeRow* row =
+        error.attribute.empty() ? nullptr : element.values.row().attribute(error.attribute);
+    std::string suggestion;
+    if (row && element.values.has(error.attribute))
+      suggestion = nearestName(element.values.text(error.attribute), error.candidates);
+    const Code& code = row && !error.candidates.empty() ? unknownNameOf(row->type) : code::refused_by_factory;
+    addAt(code, element, error.attribute, error.what(), suggestion);
+  }
+
+  void throwIfAny() const {
+    if (!found_.empty()) throw InvalidStack(found_);
+  }
+
+ private:
+  const Stack& stack_;
+  std::vector<Diagnostic> found_;
+};
+
+/// Signals are made when a port first asks for them, so that they end up in dependency order.
+class Compiler {
+ public:
+  Compiler(const Stack& stack, const control::Registry& registry)
+      : stack_(stack), registry_(registry), errors_(stack), period_(1 / stack.controller.values.real("rate")) {}
+
+  std::unique_ptr<control::Controller> run() {
+    makeModel();
+    auto back_end = makeBackEnd();
+    for (const ElementInstance& signal : stack_.signals) {
+      try {
+        makeSignal(signal);
+      } catch (const SignalFailed&) {
+        continue;
+      }
+    }
+    auto levels = makeLevels(back_end ? &back_end->abilities() : nullptr);
+    errors_.throwIfAny();
+    try {
+      return std::make_unique<control::Controller>(model_, std::move(signals_), std::move(levels), std::move(back_end),
+                                                   period_, stack_.gravity);
+    } catch (const std::exception& error) {
+      errors_.addAt(code::refused_by_factory, stack_.controller, "backend", error.what());
+    }
+    errors_.throwIfAny();
+    return nullptr;
+  }
+
+ private:
+  enum class State { being_made, made, failed };
+
+  void makeModel() {
+    try {
+      model_ = std::make_shared<const dynamics::Model>(stack_.robot);
+    } catch (const dynamics::ModelError& error) {
+      const Place place = error.place.line > 0 ? error.place : stack_.robot.place;
+      errors_.add(code::unfit_for_dynamics, place, 1, "", error.what());
+    }
+    errors_.throwIfAny();
+  }
+
+  std::unique_ptr<control::BackEnd> makeBackEnd() {
+    ElementInstance element = stack_.controller;  // with the options, so that errors find their places
+    for (const auto& [name, value] : stack_.back_end.all()) element.values.set(name, value);
+    try {
+      return registry_.makeBackEnd(stack_.back_end);
+    } catch (const ElementError& error) {
+      errors_.addAt(code::refused_by_factory, element, error.attribute, error.what(),
+                    element.values.has(error.attribute)
+                        ? nearestName(element.values.text(error.attribute), error.candidates)
+                        : "");
+    } catch (const std::exception& error) {
+      errors_.addAt(code::refused_by_factory, element, "backend", error.what());
+    }
+    return nullptr;
+  }
+
+  control::BuildContext contextOf(const ElementInstance& element) {
+    return {element.values, stack_.robot, *model_, period_,
+            [this, &element](const std::string& attribute, const std::string& reference, const std::string& type) {
+              return port(element, attribute, reference, type);
+            }};
+  }
+
+  const void* port(const ElementInstance& reader, const std::string& attribute, const std::string& reference,
+                   const std::string& type) {
+    const std::size_t dot = reference.find('.');
+    const std::string name = reference.substr(0, dot);
+    const std::string port = dot == std::string::npos ? "" : reference.substr(dot + 1);
+    const auto found = std::find_if(stack_.signals.begin(), stack_.signals.end(),
+                                    [&](const ElementInstance& signal) { return signal.name == name; });
+    if (found == stack_.signals.end()) throw ElementError(attribute, "the stack has no signal '" + name + "'", names());
+    const auto& rows = found->values.row().ports;
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& candidate) { return candidate.name == port; });
+    if (row == rows.end()) throw ElementError(attribute, "signal '" + name + "' has no port '" + port + "'");
+    if (row->type != type)
+      throw ElementError(attribute, "'" + reference + "' is a " + row->type + ", but a " + type + " is read here");
+    if (const auto state = states_.find(name); state != states_.end() && state->second == State::being_made) {
+      errors_.addAt(code::reference_cycle, reader, attribute,
+                    "signal '" + name + "' reads itself, directly or through others");
+      throw SignalFailed();
+    }
+    const void* value = makeSignal(*found).port(port);
+    if (!value) throw ElementError(attribute, "signal '" + name + "' gives nothing behind its port '" + port + "'");
+    return value;
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const ElementInstance& signal : stack_.signals)
+      for (const control::PortRow& port : signal.values.row().ports) found.push_back(signal.name + "." + port.name);
+    return found;
+  }
+
+  const control::Signal& makeSignal(const ElementInstance& element) {
+    if (const auto state = states_.find(element.name); state != states_.end()) {
+      if (state->second == State::made) return *made_.at(element.name);
+      throw SignalFailed();
+    }
+    states_[element.name] = State::being_made;
+    auto signal = make<control::Signal>(element, [&](const control::BuildContext& context) {
+      return registry_.makeSignal(context);
+    });
+    if (!signal) {
+      states_[element.name] = State::failed;
+      throw SignalFailed();
+    }
+    states_[element.name] = State::made;
+    made_[element.name] = signal.get();
+    signals_.push_back({element.name, std::move(signal)});
+    return *made_.at(element.name);
+  }
+
+  /// Null, and the reason in `errors_`, when the factory refuses.
+  template <class T, class Factory>
+  std::unique_ptr<T> make(const ElementInstance& element, Factory factory) {
+    try {
+      const control::BuildContext context = contextOf(element);
+      if (auto made = factory(context)) return made;
+      errors_.addAt(code::refused_by_factory, element, "",
+                    "the factory of <" + element.values.row().name + "> made nothing");
+    } catch (const SignalFailed&) {
+    } catch (const ElementError& error) {
+      errors_.addElementError(element, error);
+    } catch (const std::exception& error) {
+      errors_.addAt(code::refused_by_factory, element, "", error.what());
+    }
+    return nullptr;
+  }
+
+  std::vector<control::Level> makeLevels(const control::Abilities* abilities) {
+    std::vector<control::Level> levels;
+    for (const LevelDescription& description : stack_.levels) {
+      control::Level level;
+      level.priority = description.priority;
+      level.weight = description.weight;
+      if (abilities && description.strict && !abilities->strict_levels)
+        errors_.add(code::lacking_ability, description.strict_place, 4, "",
+                    backEndName() + " weighs levels against each other: it cannot keep one strictly");
+      for (const ElementInstance& element : description.tasks) {
+        auto task = make<control::Task>(element, [&](const control::BuildContext& context) {
+          return registry_.makeTask(context);
+        });
+        if (!task) continue;
+        if (abilities) checkAbilities(element, *task, *abilities);
+        level.tasks.push_back({element.name, std::move(task)});
+      }
+      levels.push_back(std::move(level));
+    }
+    return levels;
+  }
+
+  void checkAbilities(const ElementInstance& element, const control::Task& task, const control::Abilities& abilities) {
+    if (task.relation() == control::Relation::inequality && !abilities.inequalities)
+      errors_.addAt(code::lacking_ability, element, "",
+                    "<" + element.values.row().name + "> is an inequality, and " + backEndName() + " honours none");
+    const auto asked = [&](const char* attribute) {
+      return task.isContact() && element.values.has(attribute) &&
+             element.values.value(attribute).origin.kind != control::Origin::Kind::table_default;
+    };
+    if (asked("friction") && !abilities.friction_cones)
+      errors_.addAt(code::lacking_ability, element, "friction", backEndName() + " honours no friction cones");
+  }
+
+  std::string backEndName() const { return "back end '" + stack_.back_end.row().name + "'"; }
+
+  const Stack& stack_;
+  const control::Registry& registry_;
+  CompileErrors errors_;
+  double period_;
+  std::shared_ptr<const dynamics::Model> model_;
+  std::map<std::string, State> states_;
+  std::map<std::string, const control::Signal*> made_;
+  std::vector<control::NamedSignal> signals_;
+};
+
+}  // namespace
+
+std::unique_ptr<control::Controller> compile(const Stack& stack, const control::Registry& registry) {
+  return Compiler(stack, registry).run();
+}
+
+}  // namespace tactus::dsl

@@ -1,0 +1,317 @@
+#include "dsl/read_stack.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "dsl/element_checker.h"
+#include "dsl/model_search.h"
+#include "dsl/nearest_name.h"
+#include "dsl/read_robot.h"
+#include "dsl/reference_checker.h"
+#include "dsl/scene_reader.h"
+#include "dsl/stack_document.h"
+
+namespace tactus::dsl {
+namespace {
+
+using control::ElementKind;
+using control::ElementRow;
+using control::ElementValues;
+using control::Origin;
+
+/// From a document to a Stack, step by step; errors are gathered on the way.
+class StackReader {
+ public:
+  StackReader(const std::string& file, control::Registry& registry, const ReadOptions& options)
+      : registry_(registry), options_(options) {
+    stack_.file = file;
+  }
+
+  Stack run(std::vector<Diagnostic>* warnings) {
+    StackDocument document = readDocument(stack_.file, options_.set, findings_);
+    stack_.files = std::move(document.files);
+    stack_.included_from = std::move(document.included_from);
+    if (!document.root) findings_.throwErrors();
+    checkFormat(*document.root);
+    loadPlugins(*document.root);
+
+    ElementChecker checker(registry_.elements(), findings_);
+    const CheckedElement root = checker.check(*document.root);
+    stack_.name =
+        root.values.has("name") ? root.values.text("name") : std::filesystem::path(stack_.file).stem().string();
+    if (const auto* robot = root.first("robot")) readRobotOf(*robot);
+    if (const auto* scene = root.first("scene")) readScene(*scene, stack_, findings_);
+    readSignals(root);
+    readLevels(root);
+    if (const auto* controller = root.first("controller")) readController(*controller);
+    readRun(root);
+    checkReferences(root);
+    findings_.throwErrors();
+    if (warnings) warnings->insert(warnings->end(), findings_.warnings().begin(), findings_.warnings().end());
+    return std::move(stack_);
+  }
+
+ private:
+  /// A later format may mean anything: nothing else is said about such a file.
+  void checkFormat(const XmlElement& root) {
+    const XmlAttribute* format = root.attribute("format");
+    if (!format || format->value == "1") return;
+    std::string error;
+    if (!control::parseValue({.name = "format", .type = control::ValueType::integer}, format->value, error)) return;
+    findings_.errorAtValue(code::wrong_format, root, *format,
+                           "format '" + format->value + "' is not one that this version reads: expected '1'");
+    findings_.throwErrors();
+  }
+
+  /// Before anything else is checked: plugins bring the elements that the rest is made of.
+  void loadPlugins(const XmlElement& root) {
+    bool failed = false;
+    for (const auto& child : root.children) {
+      const XmlAttribute* name = child->name == "plugin" ? child->attribute("name") : nullptr;
+      if (!name) continue;
+      if (std::find(stack_.plugins.begin(), stack_.plugins.end(), name->value) != stack_.plugins.end()) continue;
+      std::string reason = "this program loads no plugins";
+      try {
+        if (options_.load_plugin) {
+          options_.load_plugin(name->value);
+          stack_.plugins.push_back(name->value);
+          continue;
+        }
+      } catch (const std::exception& error) {
+        reason = error.what();
+      }
+      failed = true;
+      Findings alone;
+      alone.errorAtValue(code::plugin_failed, *child, *name,
+                         "the plugin '" + name->value + "' cannot be loaded: " + reason);
+      Diagnostic diagnostic = alone.errors().front();
+      diagnostic.exit_code = 4;
+      findings_.add(std::move(diagnostic));
+    }
+    if (failed) findings_.throwErrors();
+  }
+
+  void readRobotOf(const CheckedElement& element) {
+    if (element.values.has("model")) {
+      stack_.robot_model = element.values.text("model");
+      const XmlAttribute& written = *element.xml->attribute("model");
+      const ModelSearch search = findModel(stack_.robot_model, element.xml->source->text.file(), options_.model_path);
+      if (search.file.empty()) {
+        std::string tried;
+        for (const std::string& file : search.tried) tried += (tried.empty() ? "" : ", ") + file;
+        findings_.errorAtValue(code::unknown_model, *element.xml, written,
+                               "there is no robot model '" + stack_.robot_model + "': looked for " + tried,
+                               nearestName(stack_.robot_model, search.names));
+      } else {
+        readModel(search.file, element);
+      }
+    }
+    if (robot_known_) readStart(element);
+  }
+
+  void readModel(const std::string& file, const CheckedElement& element) {
+    std::vector<description::Place> way{element.xml->place()};
+    const auto& further = element.xml->source->included_from;
+    way.insert(way.end(), further.begin(), further.end());
+    const auto add = [&](std::vector<Diagnostic> diagnostics) {
+      for (Diagnostic& diagnostic : diagnostics) {
+        diagnostic.included_from = way;
+        findings_.add(std::move(diagnostic));
+      }
+    };
+    stack_.robot_file = file;
+    if (auto text = readFile(file)) stack_.files.emplace(file, std::move(*text));
+    stack_.included_from.emplace(file, way);
+    try {
+      std::vector<Diagnostic> warnings;
+      stack_.robot = readRobot(file, warnings);
+      robot_known_ = true;
+      add(std::move(warnings));
+    } catch (const InvalidStack& error) {
+      add(error.diagnostics);
+    }
+  }
+
+  void readStart(const CheckedElement& element) {
+    const auto moving = stack_.robot.movingJoints();
+    const auto joint = [&](std::size_t i) -> const description::Joint& {
+      return stack_.robot.joints[static_cast<std::size_t>(moving[i])];
+    };
+    stack_.start_q.resize(static_cast<Eigen::Index>(moving.size()));
+    for (std::size_t i = 0; i < moving.size(); ++i)
+      stack_.start_q[static_cast<Eigen::Index>(i)] = std::clamp(0.0, joint(i).lower, joint(i).upper);
+    const CheckedElement* start = element.first("start");
+    if (!start || !start->values.has("q")) return;
+    const XmlAttribute& written = *start->xml->attribute("q");
+    const auto& q = start->values.numbers("q");
+    if (q.size() != moving.size())
+      return findings_.errorAtValue(code::wrong_start, *start->xml, written,
+                                    "the robot has " + std::to_string(moving.size()) + " moving joints, but q gives " +
+                                        std::to_string(q.size()) + (q.size() == 1 ? " value" : " values"));
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      stack_.start_q[static_cast<Eigen::Index>(i)] = q[i];
+      if (q[i] < joint(i).lower || q[i] > joint(i).upper)
+        findings_.errorAtWord(code::start_outside_limits, *start->xml, written, i,
+                              "joint '" + joint(i).name + "' cannot start at " + control::formatNumber(q[i]) +
+                                  ": its limits are " + control::formatNumber(joint(i).lower) + " and " +
+                                  control::formatNumber(joint(i).upper));
+    }
+  }
+
+  /// A named element; its name is taken from then on.
+  ElementInstance instanceOf(const CheckedElement& element) {
+    ElementInstance instance{element.values, "", element.xml->place(), element.xml->path()};
+    if (!element.values.has("name")) return instance;
+    instance.name = element.values.text("name");
+    const auto [taken, is_new] = names_.emplace(instance.name, element.xml);
+    if (!is_new) {
+      const description::Place first = taken->second->place();
+      const std::string file = first.file == instance.place.file ? "" : " of " + first.file;
+      findings_.errorAtValue(code::duplicate_name, *element.xml, *element.xml->attribute("name"),
+                             "the name '" + instance.name + "' is taken by the <" + taken->second->name + "> in line " +
+                                 std::to_string(first.line) + file);
+    }
+    return instance;
+  }
+
+  void readSignals(const CheckedElement& root) {
+    for (const CheckedElement* signals : root.all("signals"))
+      for (const CheckedElement& signal : signals->children)
+        if (signal.row->kind == ElementKind::signal) stack_.signals.push_back(instanceOf(signal));
+  }
+
+  void readLevels(const CheckedElement& root) {
+    for (const CheckedElement* element : root.all("level")) {
+      LevelDescription level;
+      level.place = element->xml->place();
+      if (element->values.has("weight")) level.weight = element->values.real("weight");
+      if (element->values.has("strict")) {
+        level.strict = element->values.flag("strict");
+        level.strict_place = element->values.value("strict").origin.place;
+      }
+      if (element->values.has("priority")) {
+        level.priority = element->values.integer("priority");
+        if (!stack_.levels.empty() && level.priority <= stack_.levels.back().priority)
+          findings_.errorAtValue(code::level_order, *element->xml, *element->xml->attribute("priority"),
+                                 "priority " + std::to_string(level.priority) + " stands after priority " +
+                                     std::to_string(stack_.levels.back().priority) +
+                                     ": the levels of a stack rise strictly");
+      }
+      for (const CheckedElement& task : element->children)
+        if (task.row->kind == ElementKind::task) level.tasks.push_back(instanceOf(task));
+      if (element->values.has("priority")) stack_.levels.push_back(std::move(level));
+    }
+  }
+
+  void readController(const CheckedElement& element) {
+    stack_.controller = {ElementValues(*element.row), "", element.xml->place(), element.xml->path()};
+    for (const auto& [name, value] : element.values.all())
+      if (element.row->attribute(name)) stack_.controller.values.set(name, value);
+    if (!element.values.has("backend")) return;
+    const std::string written = element.values.text("backend");
+    const auto names = registry_.names(ElementKind::back_end);
+    if (!registry_.elements().findBackEnd(written)) {
+      std::string listed;
+      for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
+      findings_.errorAtValue(code::unknown_back_end, *element.xml, *element.xml->attribute("backend"),
+                             "there is no back end '" + written + "': there " +
+                                 (listed.empty() ? "are none" : "are " + listed),
+                             nearestName(written, names));
+      return;
+    }
+    const bool replaced = !options_.backend.empty() && options_.backend != written;
+    const std::string name = replaced ? options_.backend : written;
+    const ElementRow* row = registry_.elements().findBackEnd(name);
+    if (!row) {
+      findings_.error(code::unknown_back_end, *element.xml, "--backend " + name + ": there is no such back end",
+                      nearestName(name, names));
+      return;
+    }
+    if (replaced) {
+      control::Value value = element.values.value("backend");
+      value.text = name;
+      value.origin.kind = Origin::Kind::command_line;
+      value.origin.detail = "--backend " + name;
+      stack_.controller.values.set("backend", std::move(value));
+    }
+    stack_.back_end = ElementValues(*row);
+    for (const auto& [option, value] : element.values.all())
+      if (!replaced && row->attribute(option)) stack_.back_end.set(option, value);
+    setOptions(element, *row);
+    fillOptions(element, *row);
+  }
+
+  /// Options from the command line.
+  void setOptions(const CheckedElement& element, const ElementRow& row) {
+    for (const auto& [option, text] : options_.backend_options) {
+      const control::AttributeRow* attribute = row.attribute(option);
+      if (!attribute) {
+        std::vector<std::string> known;
+        for (const auto& candidate : row.attributes) known.push_back(candidate.name);
+        findings_.error(code::unknown_option, *element.xml,
+                        "back end '" + row.name + "' has no option '" + option + "'", nearestName(option, known));
+        continue;
+      }
+      std::string error;
+      auto value = control::parseValue(*attribute, text, error);
+      if (!value) {
+        findings_.error(code::bad_value, *element.xml, "option '" + option + "' of the command line: " + error);
+        continue;
+      }
+      value->origin.kind = Origin::Kind::command_line;
+      value->origin.detail = option + "=" + text;
+      stack_.back_end.set(option, std::move(*value));
+    }
+  }
+
+  void fillOptions(const CheckedElement& element, const ElementRow& row) {
+    for (const control::AttributeRow& attribute : row.attributes) {
+      if (stack_.back_end.has(attribute.name)) continue;
+      std::string error;
+      if (attribute.default_text)
+        stack_.back_end.set(attribute.name, control::parseValue(attribute, *attribute.default_text, error).value());
+      else if (attribute.required)
+        findings_.error(code::missing_attribute, *element.xml,
+                        "back end '" + row.name + "' needs the option '" + attribute.name + "'");
+    }
+  }
+
+  void readRun(const CheckedElement& root) {
+    const CheckedElement* run = root.first("run");
+    if (!run || !run->complete) return;
+    stack_.run.duration = run->values.real("duration");
+    stack_.run.seed = static_cast<std::uint64_t>(run->values.integer("seed"));
+    const CheckedElement* record = run->first("record");
+    if (!record || !record->complete) return;
+    stack_.run.columns = record->values.text("columns");
+    stack_.run.record_rate = record->values.real("rate");
+  }
+
+  void checkReferences(const CheckedElement& root) {
+    ReferenceChecker references(stack_, robot_known_, findings_);
+    std::vector<const CheckedElement*> signals;
+    for (const CheckedElement* list : root.all("signals"))
+      for (const CheckedElement& signal : list->children) signals.push_back(&signal);
+    for (const CheckedElement* signal : signals) references.check(*signal);
+    for (const CheckedElement* level : root.all("level"))
+      for (const CheckedElement& task : level->children) references.check(task);
+    references.warnOfUnusedSignals(signals);
+  }
+
+  control::Registry& registry_;
+  const ReadOptions& options_;
+  Findings findings_;
+  Stack stack_;
+  bool robot_known_ = false;
+  std::map<std::string, const XmlElement*> names_;
+};
+
+}  // namespace
+
+Stack readStack(const std::string& file, control::Registry& registry, const ReadOptions& options,
+                std::vector<Diagnostic>* warnings) {
+  return StackReader(file, registry, options).run(warnings);
+}
+
+}  // namespace tactus::dsl

@@ -1,0 +1,284 @@
+// What is right is read as it stands: references, classes, parameters, includes, carriers, back ends.  What is wrong is
+// tried in broken_stacks_test.cc, and here where it takes options or several files.
+
+#include "dsl/read_stack.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/dsl/test_elements.h"
+
+namespace tactus::dsl_test {
+namespace {
+
+using control::Origin;
+using testing::ElementsAre;
+
+dsl::Stack read(const std::string& text, dsl::ReadOptions options = readOptions(),
+                std::vector<dsl::Diagnostic>* warnings = nullptr) {
+  static control::Registry registry = makeRegistry();
+  return dsl::readStack(writeFile("stack.xml", text), registry, options, warnings);
+}
+
+std::vector<std::string> errors(const std::string& text, dsl::ReadOptions options = readOptions()) {
+  std::vector<std::string> found;
+  try {
+    read(text, options);
+  } catch (const dsl::InvalidStack& invalid) {
+    for (const auto& diagnostic : invalid.diagnostics)
+      found.push_back(std::to_string(diagnostic.place.line) + ":" + std::to_string(diagnostic.place.column) + " " +
+                      diagnostic.code + " " + diagnostic.message +
+                      (diagnostic.suggestion.empty() ? "" : " [" + diagnostic.suggestion + "]"));
+  }
+  return found;
+}
+
+const std::string level = "<level priority=\"1\"><test.pull name=\"p\"/></level>";
+
+TEST(ReadStack, TheMainExampleIsValid) {
+  control::Registry registry = makeRegistry();
+  registry.addSignal(
+      {.name = "bump-estimate",
+       .kind = control::ElementKind::signal,
+       .description = "Stands in for the plugin's.",
+       .attributes = {{.name = "from", .type = control::ValueType::port, .port_type = "touched-points"}}},
+      [](const control::BuildContext&) { return nullptr; });
+  std::vector<dsl::Diagnostic> warnings;
+  const std::string file = std::string(TACTUS_SOURCE_DIR) + "/examples/explore_table/stack.xml";
+  const dsl::Stack stack = dsl::readStack(file, registry, readOptions(), &warnings);
+  for (const auto& warning : warnings) ADD_FAILURE() << dsl::render(warning);
+  EXPECT_EQ(stack.name, "explore-table");
+  EXPECT_EQ(stack.start_q.size(), 23);
+  ASSERT_GE(stack.objects.size(), 2u);
+  EXPECT_EQ(stack.objects[1].on, "table");
+  ASSERT_GE(stack.levels.size(), 3u);
+  EXPECT_EQ(stack.levels[0].tasks[0].values.real("force"), 0.5);
+}
+
+TEST(ReadStack, TellsWhereEveryValueComesFrom) {
+  const std::string inside =
+      "<parameter name=\"k\" value=\"300\"/><parameter name=\"d\" value=\"1\"/>\n"
+      "<defaults class=\"base\"><test.pull stiffness=\"1\" damping=\"2\" friction=\"3\"/></defaults>\n"
+      "<defaults class=\"soft\" base=\"base\"><test.pull stiffness=\"4\" damping=\"5\"/></defaults>\n"
+      "<level priority=\"1\"><test.pull name=\"p\" class=\"soft\" stiffness=\"6\" frame=\"flange\"/>\n"
+      "<test.pull name=\"q\" stiffness=\"${k}\" damping=\"${d}\"/></level>";
+  dsl::ReadOptions options = readOptions();
+  options.set["d"] = "7";
+  const dsl::Stack stack = read(smallStack(inside), options);
+  const auto& p = stack.levels.at(0).tasks.at(0).values;
+  const auto& q = stack.levels.at(0).tasks.at(1).values;
+  EXPECT_EQ(p.real("stiffness"), 6);
+  EXPECT_EQ(p.value("stiffness").origin.kind, Origin::Kind::attribute);
+  EXPECT_EQ(p.value("stiffness").origin.place.line, 6);
+  EXPECT_EQ(p.real("damping"), 5);
+  EXPECT_EQ(p.value("damping").origin.kind, Origin::Kind::defaults_class);
+  EXPECT_EQ(p.value("damping").origin.detail, "soft");
+  EXPECT_EQ(p.value("damping").origin.place.line, 5);
+  EXPECT_EQ(p.real("friction"), 3);
+  EXPECT_EQ(p.value("friction").origin.detail, "base");
+  EXPECT_EQ(q.real("stiffness"), 300);
+  EXPECT_EQ(q.real("damping"), 7);
+  EXPECT_EQ(q.value("damping").origin.kind, Origin::Kind::command_line);
+  EXPECT_EQ(q.value("damping").origin.detail, "--set d=7");
+  EXPECT_EQ(q.value("friction").origin.kind, Origin::Kind::table_default);
+  EXPECT_EQ(stack.levels.at(0).tasks.at(0).path, "/stack/level[@priority=1]/test.pull[@name=p]");
+}
+
+TEST(ReadStack, ParametersStandInsideValues) {
+  const dsl::Stack stack = read(smallStack(
+      "<parameter name=\"x\" value=\"0.6\"/><parameter name=\"y\" value=\"0.1\"/>\n"
+      "<level priority=\"1\"><test.pull name=\"p\" along=\"${x} ${y} 0; 0 ${y} ${x}\"/></level>"));
+  EXPECT_THAT(stack.levels.at(0).tasks.at(0).values.numbers("along"), ElementsAre(0.6, 0.1, 0, 0, 0.1, 0.6));
+}
+
+TEST(ReadStack, WhatIsWrongWithParametersAndSettings) {
+  dsl::ReadOptions options = readOptions();
+  options.set["pres"] = "1";
+  EXPECT_THAT(errors(smallStack("<parameter name=\"press\" value=\"1\"/>\n" + level), options),
+              ElementsAre("1:1 E036 --set pres=1: the stack has no parameter 'pres' [press]"));
+  options.set = {{"press", "${press}"}};
+  EXPECT_THAT(
+      errors(smallStack("<parameter name=\"press\" value=\"1\"/>\n" + level), options),
+      ElementsAre(
+          "1:1 E014 --set press=${press}: the value of a parameter is taken as written: '${' has no meaning in it"));
+  EXPECT_THAT(errors(smallStack("<parameter name=\"a\" value=\"${a}\"/>\n" + level)),
+              ElementsAre("3:28 E014 the value of a parameter is taken as written: '${' has no meaning in it"));
+  EXPECT_THAT(errors(smallStack("<parameter name=\"a\" value=\"1\"/><parameter name=\"a\" value=\"2\"/>\n" + level)),
+              ElementsAre("3:49 E020 the stack has a parameter 'a' already"));
+  EXPECT_THAT(errors(smallStack("<level priority=\"1\"><test.pull name=\"p\" stiffness=\"${a\"/></level>")),
+              ElementsAre("3:52 E014 '${' is not closed by '}'"));
+}
+
+TEST(ReadStack, AnIncludeStandsForWhatTheFileHolds) {
+  writeFile("more.xml",
+            "<stack format=\"1\"><parameter name=\"k\" value=\"5\"/>\n<include file=\"level.xml\"/></stack>");
+  writeFile("level.xml", "<stack>\n <level priority=\"2\"><include file=\"tasks.xml\"/></level></stack>");
+  writeFile("tasks.xml", "<level>\n\n  <test.pull name=\"q\" stiffness=\"${k}\"/></level>");
+  const dsl::Stack stack = read(smallStack(level + "<include file=\"more.xml\"/>"));
+  ASSERT_EQ(stack.levels.size(), 2u);
+  const auto& task = stack.levels[1].tasks.at(0);
+  EXPECT_EQ(task.values.real("stiffness"), 5);
+  EXPECT_EQ(task.place.file.substr(task.place.file.rfind('/') + 1), "tasks.xml");
+  EXPECT_EQ(task.place.line, 3);
+  EXPECT_EQ(stack.included_from.at(task.place.file).size(), 3u);
+  EXPECT_EQ(stack.files.size(), 5u);  // and the robot's
+}
+
+TEST(ReadStack, IncludesThatDoNotFitOrNeverEnd) {
+  writeFile("scene.xml", "<scene/>");
+  EXPECT_THAT(errors(smallStack(level + "<include file=\"scene.xml\"/>")),
+              ElementsAre("1:1 E010 a file included into <stack> has <stack> outermost, not <scene>"));
+  writeFile("a.xml", "<stack><include file=\"b.xml\"/></stack>");
+  writeFile("b.xml", "<stack><include file=\"./a.xml\"/></stack>");
+  EXPECT_THAT(errors(smallStack(level + "<include file=\"a.xml\"/>")),
+              ElementsAre("1:23 E039 './a.xml' includes itself, directly or through others"));
+  for (int i = 0; i < 12; ++i) {  // 2¹² files if nobody counted
+    const std::string next = "<include file=\"twice" + std::to_string(i + 1) + ".xml\"/>";
+    writeFile("twice" + std::to_string(i) + ".xml", "<stack>" + (i == 11 ? "" : next + next) + "</stack>");
+  }
+  EXPECT_THAT(errors(smallStack(level + "<include file=\"twice0.xml\"/>")),
+              testing::Each(testing::HasSubstr("E039 a stack may have at most 200 includes")));
+  writeFile("new.xml", "<stack format=\"2\" colour=\"red\"/>");
+  EXPECT_THAT(errors(smallStack(level + "<include file=\"new.xml\"/>")),
+              ElementsAre("1:16 E019 format '2' is not one that this version reads: expected '1'",
+                          "1:19 E012 the outermost element of an included file has no attribute 'colour'"));
+}
+
+TEST(ReadStack, PosesOnACarrierStandOnTheMiddleOfItsTop) {
+  const std::string scene =
+      "<scene><object name=\"bump\" on=\"table\" pose=\"0.04 0.05 -0.015\"><sphere radius=\"0.03\"/></object>\n"
+      "<object name=\"table\" pose=\"0.7 0 0.2 0 0 1.5707963267948966\"><box size=\"0.6 0.6 0.02\" pose=\"0 0 "
+      "0.1\"/></object>\n"
+      "<object name=\"hat\" on=\"bump\"><cylinder radius=\"0.1\" length=\"0.2\" pose=\"0 0 0.1\"/></object></scene>";
+  const dsl::Stack stack = read(smallStack(scene + level));
+  EXPECT_TRUE(stack.objects[0].object.pose.translation().isApprox(Eigen::Vector3d(0.65, 0.04, 0.295), 1e-12));
+  EXPECT_TRUE(stack.objects[2].object.pose.translation().isApprox(Eigen::Vector3d(0.65, 0.04, 0.325), 1e-12));
+  EXPECT_TRUE(stack.objects[0].object.pose.linear().isApprox(stack.objects[1].object.pose.linear()));
+}
+
+TEST(ReadStack, EveryShapeAndMaterialIsRead) {
+  const dsl::Stack stack =
+      read(smallStack("<scene gravity=\"0 0 -1.6\"><object name=\"o\" stiffness=\"1\" dissipation=\"3\" "
+                      "friction=\"0.4\" jitter=\"1 2 3\">"
+                      "<plane/><box size=\"1 2 3\"/><sphere radius=\"4\"/><cylinder radius=\"5\" length=\"6\"/>"
+                      "<capsule radius=\"7\" length=\"8\" pose=\"1 2 3 0.1 0.2 0.3\"/></object></scene>" +
+                      level));
+  const auto& object = stack.objects.at(0).object;
+  ASSERT_EQ(object.primitives.size(), 5u);
+  EXPECT_EQ(std::get<description::BoxPrimitive>(object.primitives[1].shape).size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(std::get<description::CylinderPrimitive>(object.primitives[3].shape).length, 6);
+  EXPECT_EQ(std::get<description::CapsulePrimitive>(object.primitives[4].shape).radius, 7);
+  EXPECT_EQ(object.primitives[4].pose.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(object.material.friction, 0.4);
+  EXPECT_EQ(stack.objects[0].jitter, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(stack.gravity.z(), -1.6);
+}
+
+TEST(ReadStack, AStartThatIsNotGivenIsZeroOrTheNearestLimit) {
+  const dsl::Stack stack = read("<stack format=\"1\"><robot model=\"allegro_right\"/>" + level +
+                                "<controller backend=\"all\"/></stack>");
+  EXPECT_EQ(stack.start_q[0], 0);
+  EXPECT_EQ(stack.start_q[12], 0.263);
+  EXPECT_EQ(stack.name, "stack");  // the file's
+}
+
+TEST(ReadStack, TheCommandLineReplacesTheBackEnd) {
+  dsl::ReadOptions options = readOptions();
+  options.backend = "none";
+  options.backend_options["tolerance"] = "0.5";
+  const std::string controller =
+      "<controller backend=\"all\" projection=\"successive\" tolerance=\"0.1\" rate=\"500\"/>";
+  const dsl::Stack stack = read(smallStack(level, controller), options);
+  EXPECT_EQ(stack.back_end.row().name, "none");
+  EXPECT_EQ(stack.back_end.text("projection"), "augmented");  // what was written was meant for the other one
+  EXPECT_EQ(stack.back_end.real("tolerance"), 0.5);
+  EXPECT_EQ(stack.back_end.value("tolerance").origin.kind, Origin::Kind::command_line);
+  EXPECT_EQ(stack.controller.values.text("backend"), "none");
+  EXPECT_EQ(stack.controller.values.real("rate"), 500);
+
+  options.backend = "all";
+  options.backend_options = {{"projecton", "successive"}};
+  EXPECT_THAT(errors(smallStack(level, controller), options),
+              ElementsAre("4:1 E038 back end 'all' has no option 'projecton' [projection]"));
+  options.backend_options = {{"tolerance", "-1"}};
+  EXPECT_THAT(
+      errors(smallStack(level, controller), options),
+      ElementsAre("4:1 E014 option 'tolerance' of the command line: '-1' is out of range: expected a number ≥ 0"));
+  options.backend = "al";
+  EXPECT_THAT(errors(smallStack(level, controller), options),
+              ElementsAre("4:1 E037 --backend al: there is no such back end [all]"));
+}
+
+TEST(ReadStack, PluginsAreLoadedFirst) {
+  control::Registry registry = makeRegistry();
+  dsl::ReadOptions options = readOptions();
+  std::vector<std::string> loaded;
+  options.load_plugin = [&](const std::string& name) {
+    loaded.push_back(name);
+    control::Registry with = registry;
+    with.addTask({.name = "acme.wiggle", .description = "Comes with the plugin."},
+                 [](const control::BuildContext&) { return nullptr; });
+    registry = with;
+  };
+  const std::string file = writeFile(
+      "stack.xml",
+      smallStack(
+          "<plugin name=\"acme\"/><plugin name=\"acme\"/><level priority=\"1\"><acme.wiggle name=\"w\"/></level>"));
+  const dsl::Stack stack = dsl::readStack(file, registry, options);
+  EXPECT_THAT(loaded, ElementsAre("acme"));
+  EXPECT_THAT(stack.plugins, ElementsAre("acme"));
+  EXPECT_EQ(stack.levels[0].tasks[0].values.row().name, "acme.wiggle");
+  EXPECT_THAT(
+      errors(smallStack("<level priority=\"1\"><acme.wiggle name=\"w\"/></level>")),
+      ElementsAre(testing::StartsWith(
+          "3:21 E011 there is no element <acme.wiggle> (is its plugin named by a <plugin>?); here may stand: ")));
+}
+
+TEST(ReadStack, WarnsOfASignalThatNothingReads) {
+  std::vector<dsl::Diagnostic> warnings;
+  const std::string signals =
+      "<signals><test.probe name=\"a\"/><test.probe name=\"b\"/><test.probe name=\"c\" from=\"b.value\"/></signals>";
+  read(smallStack(signals + level), readOptions(), &warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].message, "nothing reads the signal 'a'");
+  EXPECT_EQ(warnings[0].code, "W010");
+}
+
+TEST(ReadStack, WordsOfATaskStandAlone) {
+  EXPECT_THAT(errors(smallStack("<level priority=\"1\"><test.pull name=\"p\" joints=\"free\"/></level>")),
+              testing::IsEmpty());
+  EXPECT_THAT(errors(smallStack("<level priority=\"1\"><test.pull name=\"p\" joints=\"a1 free\"/></level>")),
+              ElementsAre("3:52 E014 'free' stands alone, with no other names"));
+}
+
+TEST(ReadStack, CountsAndClasses) {
+  EXPECT_THAT(errors(smallStack(level + "<run/><run/>")), ElementsAre("3:56 E017 <stack> takes at most 1 <run>"));
+  EXPECT_THAT(errors(smallStack("<level priority=\"1\"/>")), ElementsAre("3:1 E016 <level> needs a task"));
+  EXPECT_THAT(errors(smallStack("<defaults class=\"c\"><test.pull name=\"x\"/></defaults>" + level)),
+              ElementsAre("3:32 E012 an element in <defaults> has no attribute 'name'"));
+  EXPECT_THAT(errors(smallStack("<defaults class=\"c\" base=\"d\"/>" + level)),
+              ElementsAre("3:27 E035 the stack has no class 'd'"));
+  EXPECT_THAT(
+      errors(smallStack("<scene><object name=\"o\" pose=\"1 2\"><plane/></object></scene>" + level)),
+      ElementsAre("3:31 E014 attribute 'pose': expected 3 numbers (x y z) or 6 (x y z roll pitch yaw), found 2"));
+}
+
+TEST(ReadStack, AMissingFileIsSaidAtItsFirstCharacter) {
+  control::Registry registry = makeRegistry();
+  try {
+    dsl::readStack("/nowhere/stack.xml", registry, readOptions());
+    FAIL() << "a missing file was read";
+  } catch (const dsl::InvalidStack& invalid) {
+    EXPECT_EQ(dsl::render(invalid.diagnostics.at(0)),
+              "/nowhere/stack.xml:1:1: error[E001]: the stack '/nowhere/stack.xml' cannot be read\n");
+  }
+}
+
+TEST(ReadStack, AtMostFiftyErrorsAreTold) {
+  std::string many = "<level priority=\"1\">";
+  for (int i = 0; i < 200; ++i) many += "<test.pull name=\"p\"/>\n";
+  EXPECT_EQ(errors(smallStack(many + "</level>")).size(), 50u);
+}
+
+}  // namespace
+}  // namespace tactus::dsl_test

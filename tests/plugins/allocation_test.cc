@@ -1,0 +1,45 @@
+// A solve of the cascade takes no memory: counted on random problems of one shape whose rows come and go.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "plugins/null-space/null_space.h"
+#include "tests/dynamics/allocation_count.h"
+#include "tests/plugins/random_problem.h"
+
+namespace tactus::null_space {
+namespace {
+
+TEST(Allocation, TheCountSeesBothKindsOfMemory) {
+  const long before = dynamics::allocationCount();
+  const auto one = std::make_unique<int>(1);
+  const Eigen::VectorXd two(50);
+  EXPECT_GE(dynamics::allocationCount(), before + 2);
+}
+
+TEST(Allocation, ASolveOfTheCascadeTakesNone) {
+  test::ProblemSource source(31);
+  for (const Cascade cascade : {Cascade::augmented, Cascade::successive})
+    for (const Inequalities inequalities : {Inequalities::exact, Inequalities::one_pass})
+      for (int k = 0; k < 100; ++k) {
+        // A wide fade, so that singular directions are computed too.
+        const control::RankOptions rank = k % 2 ? control::RankOptions{} : control::RankOptions{0.05, 0.5};
+        control::TickProblem problem = source.problem({.max_rows = 8});
+        if (k % 3 == 0) problem.torque_limits = source.limits(problem.dof, 1);
+        NullSpace back_end({.cascade = cascade, .inequalities = inequalities, .rank = rank});
+        control::TickSolution solution;
+        back_end.prepare(problem, solution);
+        const long before = dynamics::allocationCount();
+        back_end.solve(problem, solution);
+        for (control::TickLevel& level : problem.levels)
+          for (control::TickTask& task : level.tasks) task.rows /= 2;
+        back_end.solve(problem, solution);
+        problem.mass_matrix(0, 0) = -1;
+        back_end.solve(problem, solution);
+        ASSERT_EQ(dynamics::allocationCount(), before);
+        EXPECT_EQ(solution.status, control::Status::failed);
+      }
+}
+
+}  // namespace
+}  // namespace tactus::null_space

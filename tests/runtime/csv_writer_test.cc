@@ -1,0 +1,93 @@
+#include "framework/runtime/csv_writer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <thread>
+
+#include "framework/runtime/csv_table.h"
+#include "framework/runtime/file_error.h"
+#include "tests/runtime/temporary_folder.h"
+
+namespace tactus::runtime {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using tactus::testing::contentOf;
+using tactus::testing::TemporaryFolder;
+
+TEST(CsvWriter, WritesTheseBytes) {
+  const TemporaryFolder folder;
+  CsvWriter writer(folder.file("a.csv"), {"time", "task/reach/error", "link"});
+  writer << 0.0 << 0.1 << std::string_view("palm");
+  writer.endRow();
+  writer << 1.0 << -1e-300 << std::string_view("thumb");
+  writer.endRow();
+  writer << 1e22 << 1.0 / 3 << std::string_view("");
+  writer.endRow();
+  writer << std::nan("") << std::numeric_limits<double>::infinity() << -0.0;
+  writer.endRow();
+  writer.close();
+  EXPECT_EQ(contentOf(folder.file("a.csv")),
+            "time,task/reach/error,link\n0,0.1,palm\n1,-1e-300,thumb\n1e+22,0.3333333333333333,\nnan,inf,-0\n");
+}
+
+TEST(CsvWriter, NumbersReadBackToTheSameBits) {
+  const TemporaryFolder folder;
+  std::vector<double> values;
+  std::uint64_t state = 1;
+  for (int i = 0; i < 10000; ++i) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    double value;
+    static_assert(sizeof value == sizeof state);
+    std::memcpy(&value, &state, sizeof value);
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  ASSERT_GT(values.size(), 9000u);
+  CsvWriter writer(folder.file("a.csv"), {"x"});
+  for (const double value : values) {
+    writer << value;
+    writer.endRow();
+  }
+  writer.close();
+  EXPECT_EQ(CsvTable::read(folder.file("a.csv")).numbers(0), values);
+}
+
+TEST(CsvWriter, OldRowsAreOnDiskAfterASecond) {
+  const TemporaryFolder folder;
+  CsvWriter writer(folder.file("a.csv"), {"x"});
+  writer << 1.0;
+  writer.endRow();
+  std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+  writer << 2.0;
+  writer.endRow();
+  EXPECT_EQ(contentOf(folder.file("a.csv")), "x\n1\n2\n");
+}
+
+TEST(CsvWriter, HeaderIsOnDiskAtOnce) {
+  const TemporaryFolder folder;
+  CsvWriter writer(folder.file("a.csv"), {"x", "y"});
+  EXPECT_EQ(contentOf(folder.file("a.csv")), "x,y\n");
+}
+
+TEST(CsvWriter, FullDiskIsAnErrorWithThePath) {
+  try {
+    CsvWriter writer("/dev/full", {"x"});
+    FAIL() << "wrote to a full disk";
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), AllOf(StartsWith("/dev/full: cannot be written: "), HasSubstr("No space left")));
+    EXPECT_EQ(error.path, "/dev/full");
+  }
+}
+
+TEST(CsvWriter, FolderThatIsNotThereIsAnError) {
+  EXPECT_THROW(CsvWriter("/nowhere/a.csv", {"x"}), FileError);
+}
+
+}  // namespace
+}  // namespace tactus::runtime

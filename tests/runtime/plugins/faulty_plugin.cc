@@ -1,0 +1,68 @@
+// A plugin that registers one back end, and that is wrong in the one way that `fault` says.  It is compiled once and
+// linked with one small source for each fault.
+
+#include <stdexcept>
+#include <string_view>
+
+#include "framework/runtime/plugin_api.h"
+
+extern const char* const fault;
+
+namespace {
+
+using namespace tactus;
+
+class Idle final : public control::BackEnd {
+ public:
+  Idle() : BackEnd({}) {}
+
+ private:
+  void doPrepare(const control::TickProblem&) override {}
+  void doSolve(const control::TickProblem&, control::TickSolution&) override {}
+};
+
+void addIdle(control::Registry& registry, const std::string& name) {
+  control::ElementRow row;
+  row.name = name;
+  row.kind = control::ElementKind::back_end;
+  row.description = "Does nothing.";
+  registry.addBackEnd(row, [](const control::ElementValues&) { return std::make_unique<Idle>(); });
+}
+
+void registerElements(control::Registry& registry) {
+  addIdle(registry, "test.idle");
+  const std::string_view wrong = fault;
+  if (wrong == "duplicate") addIdle(registry, "test.idle");
+  if (wrong == "halfway") addIdle(registry, "taken");
+  if (wrong == "standard_throw") throw std::runtime_error("the licence server is on holiday");
+  if (wrong == "other_throw") throw 7;
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) const tactus::runtime::PluginDescriptor* tactus_plugin() {
+  static tactus::runtime::PluginDescriptor descriptor{tactus::runtime::plugin_magic,
+                                                      tactus::runtime::plugin_abi,
+                                                      sizeof(tactus::runtime::PluginDescriptor),
+                                                      TACTUS_VERSION,
+                                                      TACTUS_COMPILER_ID,
+                                                      TACTUS_EIGEN_VERSION,
+                                                      EIGEN_MAX_ALIGN_BYTES,
+                                                      "good",
+                                                      "1.2.3",
+                                                      "BSD-3-Clause",
+                                                      registerElements};
+  const std::string_view wrong = fault;
+  if (wrong == "nodescriptor") return nullptr;
+  if (wrong == "magic") descriptor.magic = 0x6d616c6963650001;
+  if (wrong == "abi") descriptor.abi = 99;
+  if (wrong == "size") descriptor.size = 8;
+  if (wrong == "framework") descriptor.framework_version = "0.0.1";
+  if (wrong == "compiler") descriptor.compiler = "clang 99";
+  if (wrong == "eigen") descriptor.eigen_version = 30309;
+  if (wrong == "align") descriptor.eigen_max_align = 64;
+  if (wrong == "noname") descriptor.name = "";
+  if (wrong == "noregister") descriptor.register_elements = nullptr;
+  if (wrong == "duplicate" || wrong == "halfway") descriptor.name = fault;
+  return &descriptor;
+}
