@@ -98,6 +98,7 @@ void run(benchmark::State& state, control::BackEnd& back_end) {
     held += solution.rows_held;
     benchmark::DoNotOptimize(solution.torque.data());
   }
+  state.counters["iterations"] = solution.iterations;
   state.counters["failures"] = failures;
   state.counters["rows_held"] = benchmark::Counter(held, benchmark::Counter::kAvgIterations);
 }
@@ -110,20 +111,20 @@ void nullSpace(benchmark::State& state, null_space::Cascade cascade, null_space:
   run(state, back_end);
 }
 
-void weightedQp(benchmark::State& state, std::unique_ptr<qp::QpSolver> (*solver)(), qp::Objective objective) {
+void weightedQp(benchmark::State& state, bool ipopt, qp::Objective objective) {
   qp::WeightedQpOptions options;
   options.objective = objective;
-  qp::QpBackEnd back_end(options, solver());
+  qp::QpBackEnd back_end(options, ipopt ? qp::makeIpoptSolver() : qp::makeNloptSolver());
   run(state, back_end);
 }
 
 BENCHMARK_CAPTURE(nullSpace, augmented_exact, null_space::Cascade::augmented, null_space::Inequalities::exact);
 BENCHMARK_CAPTURE(nullSpace, augmented_one_pass, null_space::Cascade::augmented, null_space::Inequalities::one_pass);
 BENCHMARK_CAPTURE(nullSpace, successive_exact, null_space::Cascade::successive, null_space::Inequalities::exact);
-BENCHMARK_CAPTURE(weightedQp, ipopt_acceleration, &qp::makeIpoptSolver, qp::Objective::acceleration);
-BENCHMARK_CAPTURE(weightedQp, nlopt_acceleration, &qp::makeNloptSolver, qp::Objective::acceleration);
-BENCHMARK_CAPTURE(weightedQp, ipopt_torque, &qp::makeIpoptSolver, qp::Objective::torque);
-BENCHMARK_CAPTURE(weightedQp, nlopt_torque, &qp::makeNloptSolver, qp::Objective::torque);
+BENCHMARK_CAPTURE(weightedQp, ipopt_acceleration, true, qp::Objective::acceleration);
+BENCHMARK_CAPTURE(weightedQp, nlopt_acceleration, false, qp::Objective::acceleration);
+BENCHMARK_CAPTURE(weightedQp, ipopt_torque, true, qp::Objective::torque);
+BENCHMARK_CAPTURE(weightedQp, nlopt_torque, false, qp::Objective::torque);
 
 }  // namespace
 }  // namespace tactus

@@ -91,7 +91,7 @@ class Problem final : public Ipopt::TNLP {
 /// Primal-dual interior point (Wächter and Biegler 2006).
 class IpoptSolver final : public QpSolver {
  public:
-  IpoptSolver() : application_(new Ipopt::IpoptApplication(false)), problem_(new Problem) {
+  explicit IpoptSolver(double tolerance) : application_(new Ipopt::IpoptApplication(false)), problem_(new Problem) {
     const auto options = application_->Options();
     options->SetIntegerValue("print_level", 0);
     options->SetStringValue("sb", "yes");
@@ -109,8 +109,6 @@ class IpoptSolver final : public QpSolver {
   }
 
  private:
-  /// Of a problem of order 1.  Weak directions of the torque magnify what is left by up to 1e7.
-  static constexpr double tolerance = 1e-13;
   static constexpr int max_iterations = 100;                       // 10 to 20 are usual
   /// Rows that oppose each other leave no interior; so much of one keeps the barrier finite.  Relative to a problem
   /// of order 1.
@@ -134,6 +132,6 @@ class IpoptSolver final : public QpSolver {
 
 }  // namespace
 
-std::unique_ptr<QpSolver> makeIpoptSolver() { return std::make_unique<IpoptSolver>(); }
+std::unique_ptr<QpSolver> makeIpoptSolver(double tolerance) { return std::make_unique<IpoptSolver>(tolerance); }
 
 }  // namespace tactus::qp

@@ -31,9 +31,6 @@ struct QpBackEnd::Workspace {
   control::LevelRanks ranks;
   control::LeastDistance nearest;
   Eigen::VectorXd v;
-  Eigen::VectorXd polished;
-  control::RowMajorMatrix near_rows;
-  Eigen::VectorXd near_bounds;
   Eigen::VectorXd x;
   Eigen::VectorXd y;                                               // L⁻¹ τ
 };
@@ -41,12 +38,14 @@ struct QpBackEnd::Workspace {
 QpBackEnd::QpBackEnd(const WeightedQpOptions& options, std::unique_ptr<QpSolver> solver, bool polish)
     : BackEnd({.inequalities = true, .torque_limits = true, .force_bounds = true, .friction_cones = true}),
       options_(options),
-      solver_(std::move(solver)),
-      polish_(polish) {}
+      rows_(std::move(solver), polish) {}
 
 QpBackEnd::~QpBackEnd() = default;
 
-void QpBackEnd::doPrepare(const TickProblem& shape) { work_ = std::make_unique<Workspace>(shape, options_); }
+void QpBackEnd::doPrepare(const TickProblem& shape) {
+  work_ = std::make_unique<Workspace>(shape, options_);
+  rows_.prepare(WeightedQp::variableCapacity(shape), WeightedQp::inequalityCapacity(shape));
+}
 
 void QpBackEnd::doSolve(const TickProblem& problem, TickSolution& solution) {
   Workspace& work = *work_;
@@ -59,19 +58,15 @@ void QpBackEnd::doSolve(const TickProblem& problem, TickSolution& solution) {
   work.programme.build(problem, work.whitened);
   work.reduction.reduce(work.programme.programme());
   const LeastDistanceProgramme& reduced = work.reduction.leastDistance();
-  work.v.setZero(reduced.variables());
-  const SolverReport solver = solver_->solve(reduced, work.v);
-  solution.iterations = solver.iterations;
+  SolverReport solver;
   bool optimal = false;
   for (const double tolerance : polish_tolerances) {
-    if (!polish_ || optimal || !polish(tolerance)) continue;
-    work.reduction.restore(work.polished, work.x);
-    optimal = judge(solution);
-  }
-  if (!optimal) {
+    solver = rows_.solve(reduced, tolerance, work.v);
     work.reduction.restore(work.v, work.x);
     optimal = judge(solution);
+    if (optimal || !rows_.polishes()) break;
   }
+  solution.iterations = solver.iterations;
   if (!optimal || work.reduction.contradictory()) {
     const bool infeasible =
         work.reduction.contradictory() ||
@@ -86,24 +81,6 @@ void QpBackEnd::doSolve(const TickProblem& problem, TickSolution& solution) {
                                                       solution.contact_forces);
   }
   report(problem, solution);
-}
-
-bool QpBackEnd::polish(double tolerance) {
-  Workspace& work = *work_;
-  const LeastDistanceProgramme& reduced = work.reduction.leastDistance();
-  if (!work.v.allFinite()) return false;
-  int near = 0;
-  work.near_rows.resize(reduced.variables(), reduced.count());
-  work.near_bounds.resize(reduced.count());
-  for (int j = 0; j < reduced.count(); ++j) {
-    if (reduced.bounds[j] - reduced.rows.col(j).dot(work.v) > tolerance) continue;
-    work.near_rows.col(near) = reduced.rows.col(j);
-    work.near_bounds[near++] = reduced.bounds[j];
-  }
-  const auto outcome = work.nearest.solve(work.near_rows.leftCols(near), work.near_bounds.head(near),
-                                          Eigen::VectorXd::Zero(reduced.variables()));
-  work.polished = work.nearest.x();
-  return outcome == control::LeastDistance::Outcome::solved;
 }
 
 // Computes the KKT residual of work.x; true when it keeps the limits.

@@ -72,12 +72,12 @@ TEST_F(LeastDistanceTest, SaysWhenRowsContradictEachOther) {
 TEST_F(LeastDistanceTest, WithoutReleaseTheAnswerIsFartherAway) {
   int farther = 0;
   for (int k = 0; k < 300; ++k) {
-    const RowMajorMatrix rows = unitColumns(3, 6);
-    const Eigen::VectorXd c = gaussian(3);
-    LeastDistance solver(3, 6);
-    ASSERT_EQ(solver.solve(rows, Eigen::VectorXd::Zero(6), c), LeastDistance::Outcome::solved);
+    const RowMajorMatrix rows = unitColumns(4, 12);
+    const Eigen::VectorXd c = gaussian(4);
+    LeastDistance solver(4, 12);
+    ASSERT_EQ(solver.solve(rows, Eigen::VectorXd::Zero(12), c), LeastDistance::Outcome::solved);
     const double nearest = (solver.x() - c).norm();
-    ASSERT_EQ(solver.solve(rows, Eigen::VectorXd::Zero(6), c, false), LeastDistance::Outcome::solved);
+    ASSERT_EQ(solver.solve(rows, Eigen::VectorXd::Zero(12), c, false), LeastDistance::Outcome::solved);
     EXPECT_GE((solver.x() - c).norm(), nearest * (1 - 1e-12));
     farther += (solver.x() - c).norm() > nearest * (1 + 1e-6);
   }

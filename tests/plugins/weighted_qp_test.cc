@@ -26,7 +26,7 @@ enum class Solver { ipopt, nlopt };
 constexpr Solver solvers[] = {Solver::ipopt, Solver::nlopt};
 
 TickSolution solve(const TickProblem& problem, const WeightedQpOptions& options, Solver solver, bool polish = true) {
-  QpBackEnd back_end(options, solver == Solver::ipopt ? makeIpoptSolver() : makeNloptSolver(), polish);
+  QpBackEnd back_end(options, solver == Solver::ipopt ? makeIpoptSolver(polish ? 1e-6 : 1e-13) : makeNloptSolver(), polish);
   TickSolution solution;
   back_end.prepare(problem, solution);
   back_end.solve(problem, solution);
