@@ -95,6 +95,7 @@ void run(benchmark::State& state, control::BackEnd& back_end) {
   for (auto _ : state) {
     back_end.solve(ticks[k++ % ticks.size()], solution);
     failures += solution.status != control::Status::ok;
+    if (solution.status != control::Status::ok) fprintf(stderr, "%s %g %g %g it %d\n", solution.message.c_str(), solution.kkt.stationarity, solution.kkt.primal, solution.kkt.complementarity, solution.iterations);
     held += solution.rows_held;
     benchmark::DoNotOptimize(solution.torque.data());
   }

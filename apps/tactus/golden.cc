@@ -83,6 +83,17 @@ ordered_json provenance(const Session& session, const std::string& reason, Progr
           {"inputs", inputs}};
 }
 
+/// The resolved stack with files named from the case's folder: a case must read on another machine, too.
+std::string portableStack(const dsl::Stack& stack, const fs::path& folder) {
+  std::string xml = dsl::writeResolved(stack);
+  for (const auto& [file, content] : stack.files) {
+    const std::string absolute = fs::absolute(file).lexically_normal().string();
+    const std::string relative = fs::relative(absolute, folder).string();
+    for (size_t at; (at = xml.find(absolute)) != std::string::npos;) xml.replace(at, absolute.size(), relative);
+  }
+  return xml;
+}
+
 /// Runs the case's stack and returns its log in `folder`.
 std::string runInto(const std::string& folder, Session& session) {
   const auto recorder = session.recordInto(folder);
@@ -106,7 +117,7 @@ int record(const GoldenArguments& arguments) {
     if (!fs::exists(stack_file)) throw UsageError("golden record: a new case needs --stack FILE");
   } else {
     // The case keeps the stack with everything resolved, so that it stands alone.
-    runtime::writeFile(stack_file, dsl::writeResolved(readAloud(program, arguments.stack)));
+    runtime::writeFile(stack_file, portableStack(readAloud(program, arguments.stack), folder));
   }
   Session session(readAloud(program, {stack_file, {}, {}, {}, {}}), program.registry());
   const TemporaryFolder temporary;

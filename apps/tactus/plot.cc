@@ -86,7 +86,7 @@ class Frame {
       svg += "<path d='M" + at + " " + px(area_.y) + "v" + px(area_.height) + "' stroke='#e7e7e2' fill='none'/><text x='" +
              at + "' y='" + px(area_.y + area_.height + 16) + "' text-anchor='middle' fill='#555'>" + text + "</text>\n";
     });
-    ticks(y_, static_cast<int>(std::max(2.0, area_.height / 40)), [&](double value, const std::string& text) {
+    ticks(y_, static_cast<int>(std::max(2.0, area_.height / 32)), [&](double value, const std::string& text) {
       const double at = px_y(value);
       svg += "<path d='M" + px(area_.x) + " " + px(at) + "h" + px(area_.width) +
              "' stroke='#e7e7e2' fill='none'/><text x='" + px(area_.x - 7) + "' y='" + px(at + 4) +

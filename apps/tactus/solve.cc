@@ -96,7 +96,7 @@ int solve(const SolveArguments& arguments, bool json) {
   back_end->solve(problem, solution);
   const double solve_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 
-  std::cout << (json ? dsl::solutionToJson(problem, solution, choice.name, solve_us) + "\n" : summary(solution));
+  std::cout << (json ? dsl::solutionToJson(problem, solution, choice.name, solve_us) : summary(solution));
   if (solution.status == control::Status::ok) return exit_done;
   std::cerr << "tactus solve: " << (solution.status == control::Status::infeasible ? "infeasible" : "failed")
             << (solution.message.empty() ? "" : ": " + solution.message) << "\n";

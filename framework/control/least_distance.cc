@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <cstdio>
 
 namespace tactus::control {
 namespace {
@@ -11,6 +12,7 @@ enum RowState { row_free, row_active, row_set_aside };
 
 constexpr double violation_tolerance = 1e-13;                      // relative to the size of c and d
 constexpr double dependence_tolerance = 1e-10;                     // sine of a row's angle to the active ones
+constexpr double zero_change = 1e-12;                              // of a multiplier: rounding, not a direction
 constexpr int steps_per_row = 20;
 
 }  // namespace
@@ -43,7 +45,9 @@ LeastDistance::Outcome LeastDistance::solve(const ConstColumnsRef& rows, const E
     const Outcome outcome = addRow(rows, d, row, release);
     if (outcome != Outcome::solved) return outcome;
   }
+  Eigen::VectorXd xb=x_.head(n_);
   restoreAccuracy(d, c);
+  double w1=0; for(int j=0;j<m_;++j) {double q=rows.col(j).dot(x_.head(n_))-d[j]; w1=std::max(w1,q);} if (w1>1e-9) fprintf(stderr,"DBG after %g tol %g diff %g minR %g act %d of %d n %d\n", w1, tolerance_, (xb-x_.head(n_)).norm(), active_count_? R_.diagonal().head(active_count_).minCoeff():0., active_count_, m_, n_);
   return Outcome::solved;
 }
 
@@ -98,6 +102,9 @@ void LeastDistance::remove(const ConstColumnsRef& rows, int position) {
     decompose(rows, active_[i]);
     append(active_[i]);
   }
+  // With one row less, those that depended on it count again.
+  for (int j = 0; j < m_; ++j)
+    if (state_[j] == row_set_aside) state_[j] = row_free;
 }
 
 LeastDistance::Outcome LeastDistance::addRow(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d,
@@ -111,12 +118,20 @@ LeastDistance::Outcome LeastDistance::addRow(const ConstColumnsRef& rows, const 
     const double free_part = z_.head(n_).squaredNorm();
     const bool dependent = active_count_ == n_ || free_part < dependence_tolerance * dependence_tolerance;
     const double violation = rows.col(row).dot(x_.head(n_)) - d[row];
+    const double size = tolerance_ / violation_tolerance + std::abs(d[row]);
+    const double largest = active_count_ > 0 ? r.cwiseAbs().maxCoeff() : 0;
+    // A row that the active ones imply is violated by their rounding.
+    if (dependent && violation <= dependence_tolerance * size * (1 + largest)) {
+      state_[row] = row_set_aside;
+ if (violation>1e-9) fprintf(stderr,"DBG aside viol %g largest %g act %d minR %g\n", violation, largest, active_count_, R_.diagonal().head(active_count_).minCoeff());
+      return Outcome::solved;
+    }
 
     const double full = dependent ? std::numeric_limits<double>::infinity() : violation / free_part;
     double step = full;
     int leaving = -1;
     for (int i = 0; i < active_count_ && release; ++i) {
-      if (r[i] <= 0) continue;
+      if (r[i] <= zero_change * std::max(1.0, largest)) continue;
       const double limit = multipliers_[active_[i]] / r[i];
       if (limit < step) {
         step = limit;
@@ -124,9 +139,7 @@ LeastDistance::Outcome LeastDistance::addRow(const ConstColumnsRef& rows, const 
       }
     }
     if (dependent && leaving < 0) {
-      // No held row can give way.  What is violated by rounding alone is let be.
-      const double size = tolerance_ / violation_tolerance + std::abs(d[row]);
-      if (release && violation > std::sqrt(violation_tolerance) * size) return Outcome::infeasible;
+      if (release) return Outcome::infeasible;                      // no held row can give way
       state_[row] = row_set_aside;
       return Outcome::solved;
     }

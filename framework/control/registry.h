@@ -49,7 +49,8 @@ class BuildContext {
   }
   /// Index into Model::frames() of the link that the attribute names.
   int frame(const std::string& attribute) const;
-  /// Frames of links and link groups, in link order, each once.
+  /// Frames of links and link groups, in link order, each once.  Words among the row's `choices` add none, here
+  /// and in `joints`: they are the element's own.
   std::vector<int> frames(const std::string& attribute) const;
   /// Indices into q of joints and joint groups, rising, each once.
   std::vector<int> joints(const std::string& attribute) const;
@@ -68,6 +69,7 @@ using BackEndFactory = std::function<std::unique_ptr<BackEnd>(const ElementValue
 class Registry {
  public:
   void addStructure(ElementRow row);
+  /// Tasks and signals get the attributes `name` (required) and `class` besides their own.
   void addTask(ElementRow row, TaskFactory make);
   void addSignal(ElementRow row, SignalFactory make);
   void addBackEnd(ElementRow row, BackEndFactory make);

@@ -6,6 +6,7 @@ namespace tactus::qp {
 namespace {
 
 constexpr int max_rounds = 20;                                     // 1 to 3 are usual
+constexpr double start_reach = -0.3;                               // rows so near their bounds at v = 0 are likely to matter
 constexpr double kept = 1e-9;                                      // violation of a row that counts as none
 
 }  // namespace
@@ -20,7 +21,7 @@ SolverReport LazyRows::solve(const LeastDistanceProgramme& programme, double nea
   chosen_.clear();
   is_chosen_.assign(programme.count(), false);
   SolverReport report{"no row is violated", 0};
-  for (int round = 0; addViolated(programme, v, round == 0 ? -0.1 : kept); ++round) {
+  for (int round = 0; addViolated(programme, v, round == 0 ? start_reach : kept); ++round) {
     if (round == max_rounds) {                                     // all of them, then
       for (int j = 0; j < programme.count(); ++j)
         if (!is_chosen_[j]) chosen_.push_back(j);
@@ -65,19 +66,31 @@ void LazyRows::solveChosen(const LeastDistanceProgramme& programme, double near,
   v.applyOnTheLeft(qr.householderQ());
 }
 
+// Rows that the exact point then violates were wrongly left out by the solver's answer, and join.
 void LazyRows::polish(double near) {
   const int n = small_.variables();
-  int count = 0;
+  is_near_.assign(small_.count(), false);
   near_rows_.resize(n, small_.count());
   near_bounds_.resize(small_.count());
-  for (int j = 0; j < small_.count(); ++j) {
-    if (small_.bounds[j] - small_.rows.col(j).dot(point_) > near) continue;
-    near_rows_.col(count) = small_.rows.col(j);
-    near_bounds_[count++] = small_.bounds[j];
+  Eigen::VectorXd exact = point_;
+  int count = 0;
+  double reach = near;                                             // how far inside its bound a row may be and still join
+  for (int before = -1; count > before;) {
+    before = count;
+    for (int j = 0; j < small_.count(); ++j) {
+      if (is_near_[j] || small_.bounds[j] - small_.rows.col(j).dot(exact) > reach) continue;
+      near_rows_.col(count) = small_.rows.col(j);
+      near_bounds_[count++] = small_.bounds[j];
+      is_near_[j] = true;
+    }
+    if (count == before) break;
+    const auto outcome =
+        nearest_.solve(near_rows_.leftCols(count), near_bounds_.head(count), Eigen::VectorXd::Zero(n));
+    if (outcome != control::LeastDistance::Outcome::solved) return;
+    exact = nearest_.x();
+    reach = -kept;
   }
-  const auto outcome =
-      nearest_.solve(near_rows_.leftCols(count), near_bounds_.head(count), Eigen::VectorXd::Zero(n));
-  if (outcome == control::LeastDistance::Outcome::solved) point_ = nearest_.x();
+  if (count > 0) point_ = exact;
 }
 
 }  // namespace tactus::qp

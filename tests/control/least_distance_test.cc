@@ -13,7 +13,10 @@ class LeastDistanceTest : public testing::Test {
   RowMajorMatrix unitColumns(int n, int count) {
     RowMajorMatrix columns = RowMajorMatrix::NullaryExpr(n, count, [this] { return normal_(random_); });
     for (int j = 2; j < count; ++j)
-      if (integer(0, 3) == 0) columns.col(j) = columns.col(j - 1) - 2 * columns.col(j - 2);
+      if (integer(0, 3) == 0)
+        columns.col(j) = columns.col(j - 1) - 2 * columns.col(j - 2);
+      else if (integer(0, 4) == 0)
+        columns.col(j) = (integer(0, 1) ? 1 : -1) * columns.col(integer(0, j - 1));
     columns.colwise().normalize();
     return columns;
   }
@@ -29,14 +32,14 @@ class LeastDistanceTest : public testing::Test {
 TEST_F(LeastDistanceTest, MeetsTheOptimalityConditions) {
   int released = 0;
   int active = 0;
-  for (int k = 0; k < 1000; ++k) {
-    const int n = integer(1, 12);
-    const int m = integer(0, 20);
+  for (int k = 0; k < 3000; ++k) {
+    const int n = integer(1, 26);
+    const int m = integer(0, 40);
     const RowMajorMatrix rows = unitColumns(n, m);
     const Eigen::VectorXd inside = gaussian(n);                    // keeps every row
     const Eigen::VectorXd d = rows.transpose() * inside + gaussian(m).cwiseAbs() * (k % 2);
     const Eigen::VectorXd c = 3 * gaussian(n);
-    LeastDistance solver(12, 20);
+    LeastDistance solver(26, 40);
     ASSERT_EQ(solver.solve(rows, d, c), LeastDistance::Outcome::solved);
     const Eigen::VectorXd x = solver.x();
     const Eigen::VectorXd lambda = solver.multipliers();
@@ -72,9 +75,12 @@ TEST_F(LeastDistanceTest, SaysWhenRowsContradictEachOther) {
 TEST_F(LeastDistanceTest, WithoutReleaseTheAnswerIsFartherAway) {
   int farther = 0;
   for (int k = 0; k < 300; ++k) {
-    const RowMajorMatrix rows = unitColumns(4, 12);
-    const Eigen::VectorXd c = gaussian(4);
-    LeastDistance solver(4, 12);
+    // Rows that lie nearly in three of eight dimensions get in each other's way.
+    RowMajorMatrix rows = 0.2 * unitColumns(8, 12);
+    rows.topRows(3) += unitColumns(3, 12);
+    rows.colwise().normalize();
+    const Eigen::VectorXd c = gaussian(8);
+    LeastDistance solver(8, 12);
     ASSERT_EQ(solver.solve(rows, Eigen::VectorXd::Zero(12), c), LeastDistance::Outcome::solved);
     const double nearest = (solver.x() - c).norm();
     ASSERT_EQ(solver.solve(rows, Eigen::VectorXd::Zero(12), c, false), LeastDistance::Outcome::solved);

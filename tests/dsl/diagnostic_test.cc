@@ -25,21 +25,21 @@ TEST(Diagnostic, IsRenderedWithItsLineAndACaretBelowTheColumn) {
 TEST(Diagnostic, ShowsSuggestionPathAndIncludes) {
   Diagnostic diagnostic = example();
   diagnostic.severity = Severity::warning;
-  diagnostic.suggestion = "b";
+  diagnostic.suggestion = "bar";
   diagnostic.path = "/stack/a";
   diagnostic.included_from = {{"g.xml", 3, 1}, {"h.xml", 4, 2}};
   EXPECT_EQ(render(diagnostic),
             "f.xml:7:5: warning[E012]: <a> has no attribute 'bb'\n"
             "  7 | \t<a bb=\"1\"/>\n"
-            "    | \t   ^^ did you mean 'b'?\n"
+            "    | \t   ^^ did you mean 'bar'?\n"
             "  in /stack/a, included from g.xml:3:1, included from h.xml:4:2\n");
 }
 
 TEST(Diagnostic, WithoutALineTheSuggestionStandsAlone) {
   Diagnostic diagnostic = example();
   diagnostic.source_line.clear();
-  diagnostic.suggestion = "b";
-  EXPECT_EQ(render(diagnostic), "f.xml:7:5: error[E012]: <a> has no attribute 'bb'\n  did you mean 'b'?\n");
+  diagnostic.suggestion = "bar";
+  EXPECT_EQ(render(diagnostic), "f.xml:7:5: error[E012]: <a> has no attribute 'bb'\n  did you mean 'bar'?\n");
 }
 
 TEST(Diagnostic, CaretsStopWhereTheLineDoes) {

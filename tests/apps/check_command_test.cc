@@ -1,0 +1,92 @@
+#include <gmock/gmock.h>
+
+#include "tests/apps/program.h"
+
+namespace tactus::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(CheckCommand, GoodStack) {
+  const Outcome outcome = tactus({"check", data("press.xml")});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.out, data("press.xml") + ": ok\n");
+}
+
+TEST(CheckCommand, GoodStackAsJson) {
+  const Outcome outcome = tactus({"check", data("press.xml"), "--json"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(outcome.json()["errors"].empty());
+}
+
+TEST(CheckCommand, MisspelledAttributeIsLocated) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "stiffness=", "stifness=");
+  const Outcome outcome = tactus({"check", "--json", stack});
+  EXPECT_EQ(outcome.exit_code, 3);
+  const nlohmann::json error = outcome.json()["errors"].at(0);
+  EXPECT_EQ(error["file"], stack);
+  EXPECT_EQ(error["line"], 13);
+  EXPECT_EQ(error["column"], 87);
+  EXPECT_EQ(error["code"], "E012");
+  EXPECT_EQ(error["suggestion"], "stiffness");
+  EXPECT_THAT(error["message"].get<std::string>(), HasSubstr("stifness"));
+
+  const Outcome talk = tactus({"check", stack});
+  EXPECT_EQ(talk.exit_code, 3);
+  EXPECT_EQ(talk.out, "");
+  EXPECT_THAT(talk.err, AllOf(StartsWith(stack + ":13:87: error[E012]:"), HasSubstr("did you mean 'stiffness'?")));
+}
+
+TEST(CheckCommand, EveryFileIsChecked) {
+  const TemporaryFolder first, second;
+  const std::string a = changedStack(first, "stiffness=\"1\"", "stiffness=\"nan\"");
+  const std::string b = changedStack(second, "distal", "dital");
+  const Outcome outcome = tactus({"check", "--json", a, data("press.xml"), b});
+  EXPECT_EQ(outcome.exit_code, 3);
+  const nlohmann::json errors = outcome.json()["errors"];
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0]["file"], a);
+  EXPECT_EQ(errors[1]["file"], b);
+  EXPECT_EQ(errors[1]["suggestion"], "distal");
+}
+
+TEST(CheckCommand, MissingFileIsNoInvalidStack) {
+  const Outcome outcome = tactus({"check", "/nowhere/stack.xml", "--json"});
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.json()["errors"][0]["message"].get<std::string>(), HasSubstr("/nowhere/stack.xml: cannot be opened"));
+}
+
+TEST(CheckCommand, MissingModelIsAnInvalidStack) {
+  const TemporaryFolder folder;
+  const Outcome outcome = tactus({"check", changedStack(folder, "finger.urdf", "toe.urdf")});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("toe.urdf"));
+}
+
+TEST(CheckCommand, MissingPluginIsExitFour) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      tactus({"check", changedStack(folder, "<robot", "<plugin name=\"acme\"/>\n  <robot"), "--json"});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.json()["errors"][0]["message"].get<std::string>(),
+              AllOf(HasSubstr("plugin 'acme' was not found"), HasSubstr("acme.so: no such file")));
+}
+
+TEST(CheckCommand, SettingsReachTheParameters) {
+  EXPECT_EQ(tactus({"check", data("press.xml"), "--set", "press=0.8"}).exit_code, 0);
+  EXPECT_EQ(tactus({"check", data("press.xml"), "--set", "pres=0.8"}).exit_code, 3);
+  EXPECT_EQ(tactus({"check", data("press.xml"), "--set", "press"}).exit_code, 2);
+}
+
+TEST(CheckCommand, AnotherBackEndIsCheckedInstead) {
+  EXPECT_EQ(tactus({"check", data("press.xml"), "--backend", "qp/nlopt"}).exit_code, 0);
+  const Outcome outcome = tactus({"check", data("press.xml"), "--backend", "magic"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'magic'; back ends: null-space, qp"));
+}
+
+}  // namespace
+}  // namespace tactus::testing

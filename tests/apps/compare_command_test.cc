@@ -1,0 +1,55 @@
+#include <gmock/gmock.h>
+
+#include "tests/apps/program.h"
+
+namespace tactus::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(CompareCommand, SameStatesAndClosedLoop) {
+  const Outcome outcome = tactus({"compare", data("press.xml"), "--backends", "null-space,null-space/successive,qp/ipopt",
+                                  "--duration", "0.4", "--every", "10", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["reference"], "null-space");
+  EXPECT_EQ(json["sampled_ticks"], 40);
+  ASSERT_EQ(json["backends"].size(), 3u);
+  for (const nlohmann::json& back_end : json["backends"]) {
+    const nlohmann::json same = back_end["same_states"], closed = back_end["closed_loop"];
+    EXPECT_EQ(same["compared"], 40);
+    EXPECT_EQ(same["unsolved"], 0);
+    EXPECT_GT(same["solve_us"]["median"].get<double>(), 0);
+    EXPECT_LT(same["violation_max"].get<double>(), 1e-6);
+    EXPECT_EQ(closed["fallbacks"], 0);
+    EXPECT_EQ(closed["duration_s"], 0.4);
+    EXPECT_GT(closed["tick_us"]["p99"].get<double>(), 0);
+    EXPECT_TRUE(closed["metrics"].contains("contact_force_mean_N"));
+    EXPECT_GT(closed["task_errors"]["bow"].get<double>(), 0);
+  }
+  // The reference differs from itself in nothing; with two levels the two cascades are one.
+  EXPECT_EQ(json["backends"][0]["same_states"]["torque_difference"]["max"], 0.0);
+  EXPECT_LT(json["backends"][1]["same_states"]["torque_difference_relative"]["max"].get<double>(), 1e-9);
+  EXPECT_GT(json["backends"][2]["same_states"]["torque_difference"]["max"].get<double>(), 0);
+  EXPECT_TRUE(json["backends"][0]["closed_loop"]["kkt_max"].is_null());
+  EXPECT_TRUE(json["backends"][2]["closed_loop"]["kkt_max"]["primal"].is_number());
+}
+
+TEST(CompareCommand, TableForPeople) {
+  const Outcome outcome =
+      tactus({"compare", data("press.xml"), "--backends", "null-space,qp/nlopt", "--duration", "0.05"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* line : {"null-space", "qp/nlopt", "torque difference, mean (M⁻¹ norm)", "constraint violation",
+                           "KKT stationarity", "tick, median (µs)", "tick, p99 (µs)", "fallbacks", "mean task error"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(line));
+  }
+}
+
+TEST(CompareCommand, UnknownVariantIsRefusedBeforeTheFirstRun) {
+  const Outcome outcome = tactus({"compare", data("press.xml"), "--backends", "null-space,qp/ipopd"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("back end 'qp' has no variant 'ipopd'; variants: "));
+}
+
+}  // namespace
+}  // namespace tactus::testing

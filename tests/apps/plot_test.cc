@@ -1,0 +1,71 @@
+// What a picture shows is looked at by people; what can be tested is that nothing is lost and nothing is malformed.
+
+#include "apps/tactus/plot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tinyxml2.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tactus::app {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr Box box{0, 0, 600, 300};
+
+void expectWellFormed(const std::string& svg) {
+  tinyxml2::XMLDocument document;
+  EXPECT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS) << document.ErrorStr();
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST(Plot, LinesHaveTitleAndUnits) {
+  LinePlot plot{"Forces", "time (s)", "force (N)", {{"mean", "blue", {0, 1, 2}, {0, 0.5, 0.4}}}, 0.5, "wanted", true};
+  const std::string svg = svgDocument(600, 300, draw(plot, box));
+  expectWellFormed(svg);
+  for (const char* text : {"Forces", "time (s)", "force (N)", "mean", "wanted"}) EXPECT_THAT(svg, HasSubstr(text));
+}
+
+TEST(Plot, APeakOfOneSampleIsNotThinnedAway) {
+  Line line{"", "blue", {}, {}};
+  for (int i = 0; i < 100000; ++i) {
+    line.x.push_back(i);
+    line.y.push_back(i == 54321 ? 10 : 1);
+  }
+  const std::string svg = svgDocument(600, 300, draw(LinePlot{"t", "x", "y", {line}, {}, "", true}, box));
+  expectWellFormed(svg);
+  EXPECT_LT(svg.size(), 40000u);
+  // 10 is 1/1.06 of the axis: 34 px of margin, 222 px of axis.
+  EXPECT_THAT(svg, HasSubstr(" 46.6"));
+}
+
+TEST(Plot, NothingOneValueAndNotANumberCanBeDrawn) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const std::vector<double>& y : {std::vector<double>{}, {1}, {nan, nan}, {1, nan, 2}, {5, 5, 5}}) {
+    std::vector<double> x(y.size());
+    for (size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(i);
+    expectWellFormed(svgDocument(600, 300, draw(LinePlot{"t", "x", "y", {{"", "blue", x, y}}, {}, "", false}, box)));
+  }
+  expectWellFormed(svgDocument(600, 300, draw(PointPlot{"t", "x", "y", {}, {}, {}, 1, true, {}}, box)));
+}
+
+TEST(Plot, EqualAxesHaveOneScale) {
+  PointPlot plot{"t", "x", "y", {0, 1}, {0, 0}, {0, 0}, 1, true, {{0, 0, true, "here"}, {1, 1, false, "there"}}};
+  const std::string svg = svgDocument(600, 600, draw(plot, {0, 0, 600, 600}));
+  expectWellFormed(svg);
+  EXPECT_THAT(svg, HasSubstr("here"));
+  EXPECT_THAT(svg, HasSubstr("there"));
+}
+
+TEST(Plot, NamesCannotBreakTheFile) {
+  EXPECT_EQ(escaped("<a & 'b' \"c\">"), "&lt;a &amp; &#39;b&#39; &quot;c&quot;&gt;");
+  expectWellFormed(svgDocument(1, 1, draw(LinePlot{"</svg><script>", "&", "'", {}, {}, "", true}, box)));
+}
+
+}  // namespace
+}  // namespace tactus::app

@@ -1,0 +1,58 @@
+#include <gmock/gmock.h>
+
+#include "tests/apps/program.h"
+
+namespace tactus::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string library(const std::string& name) { return std::string(TEST_PLUGINS) + "/" + name + ".so"; }
+
+const nlohmann::json* find(const nlohmann::json& plugins, const std::string& name) {
+  for (const nlohmann::json& plugin : plugins) {
+    if (plugin["name"] == name) return &plugin;
+  }
+  return nullptr;
+}
+
+TEST(PluginsCommand, ShippedPluginsAreListed) {
+  const Outcome outcome = tactus({"plugins", "list", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json plugins = outcome.json()["plugins"];
+  for (const char* name : {"bump-estimate", "null-space", "qp"}) {
+    const nlohmann::json* plugin = find(plugins, name);
+    ASSERT_TRUE(plugin) << name;
+    EXPECT_EQ((*plugin)["elements"], nlohmann::json({name}));
+    EXPECT_EQ((*plugin)["version"], TACTUS_VERSION);
+  }
+}
+
+TEST(PluginsCommand, ExplicitPluginIsLoaded) {
+  const nlohmann::json plugins = tactus({"plugins", "list", "--json", "--plugin", library("good")}).json()["plugins"];
+  ASSERT_TRUE(find(plugins, "good"));
+  EXPECT_EQ((*find(plugins, "good"))["version"], "1.2.3");
+}
+
+TEST(PluginsCommand, WrongPluginIsExitFour) {
+  const Outcome outcome = tactus({"plugins", "list", "--plugin", library("abi")});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("built with plugin ABI 99, but this program has 1"));
+}
+
+TEST(PluginsCommand, MissingPluginIsExitFour) {
+  const Outcome outcome = tactus({"plugins", "list", "--plugin", "/nowhere/acme.so"});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("plugin library /nowhere/acme.so: no such file"));
+}
+
+TEST(PluginsCommand, AStackFindsPluginsByNameInThePath) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "<robot", "<plugin name=\"halfway\"/>\n  <robot");
+  EXPECT_EQ(tactus({"check", stack}).exit_code, 4);
+  EXPECT_EQ(tactus({"check", stack}, {.environment = {std::string("TACTUS_PLUGIN_PATH=") + TEST_PLUGINS}}).exit_code, 0);
+  EXPECT_EQ(tactus({"check", stack, "--plugin", TEST_PLUGINS}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace tactus::testing

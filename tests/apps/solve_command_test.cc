@@ -1,0 +1,94 @@
+#include <gmock/gmock.h>
+
+#include "tests/apps/program.h"
+
+namespace tactus::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SolveCommand, CascadeByHand) {
+  const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "null-space", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["backend"], "null-space");
+  EXPECT_EQ(json["status"], "ok");
+  // The second level may not touch the first joint: of its torque (5, 5, 0) the second joint's part is left.
+  EXPECT_NEAR(json["torque"][0].get<double>(), 3, 1e-12);
+  EXPECT_NEAR(json["torque"][1].get<double>(), 5, 1e-12);
+  EXPECT_NEAR(json["torque"][2].get<double>(), 0, 1e-12);
+  ASSERT_EQ(json["levels"].size(), 2u);
+  EXPECT_EQ(json["levels"][0]["rank"], 1);
+  EXPECT_EQ(json["levels"][0]["nullity"], 2);
+  EXPECT_EQ(json["levels"][1]["nullity"], 1);
+  // a = J M⁻¹ Jᵀ F = 5 (1 + ½); reached is 3 + 2.5.
+  EXPECT_NEAR(json["levels"][1]["residual"].get<double>(), 2, 1e-12);
+  EXPECT_TRUE(json.contains("solve_us"));
+}
+
+TEST(SolveCommand, EveryVariantOfTheCascade) {
+  for (const char* projection : {"successive", "augmented"}) {
+    for (const char* inequalities : {"one-pass", "exact"}) {
+      const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "null-space", "--projection",
+                                      projection, "--inequalities", inequalities, "--json"});
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_NEAR(outcome.json()["torque"][0].get<double>(), 3, 1e-12);
+    }
+  }
+}
+
+TEST(SolveCommand, BothSolversOfTheProgramme) {
+  for (const char* solver : {"ipopt", "nlopt"}) {
+    const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "qp", "--solver", solver, "--json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.json()["backend"], "qp");
+    EXPECT_NEAR(outcome.json()["torque"][0].get<double>(), 3, 0.05);  // a weight of 100, not strictness
+  }
+}
+
+TEST(SolveCommand, InfeasibleIsJsonAllTheSame) {
+  const Outcome outcome = tactus({"solve", data("infeasible.json"), "--backend", "qp", "--json"});
+  EXPECT_EQ(outcome.exit_code, 5);
+  EXPECT_EQ(outcome.json()["status"], "infeasible");
+  EXPECT_EQ(outcome.json()["torque"].size(), 2u);
+  EXPECT_THAT(outcome.err, HasSubstr("infeasible"));
+}
+
+TEST(SolveCommand, OptionOfAnotherBackEnd) {
+  const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "null-space", "--solver", "ipopt"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("back end 'null-space' has no option 'solver'; its options: projection, inequalities"));
+}
+
+TEST(SolveCommand, MisspelledOption) {
+  const Outcome outcome =
+      tactus({"solve", data("two_levels.json"), "--backend", "null-space", "--option", "rank-tolerence=1e-6"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean 'rank-tolerance'?"));
+}
+
+TEST(SolveCommand, ValueThatIsNoChoice) {
+  const Outcome outcome =
+      tactus({"solve", data("two_levels.json"), "--backend", "null-space", "--projection", "sideways"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("'sideways'"));
+  EXPECT_THAT(outcome.err, HasSubstr("'successive'"));
+}
+
+TEST(SolveCommand, UnknownBackEnd) {
+  const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "hopq"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'hopq'; back ends: null-space, qp"));
+}
+
+TEST(SolveCommand, FileThatIsNoTickProblem) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(tactus({"solve", "/nowhere.json", "--backend", "null-space"}).exit_code, 6);
+  const Outcome outcome = tactus({"solve", folder.write("t.json", "{\"format\": \"tactus-tick/9\"}"), "--backend",
+                                  "null-space"});
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.err, HasSubstr(folder.file("t.json") + ": "));
+}
+
+}  // namespace
+}  // namespace tactus::testing
