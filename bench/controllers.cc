@@ -53,7 +53,6 @@ class ExplorationProblems {
     problem.torque_limits = control::TorqueLimits{Eigen::VectorXd::Constant(dof, -20), Eigen::VectorXd::Constant(dof, 20), {}};
 
     std::vector<control::TickProblem> ticks;
-    std::vector<Eigen::VectorXd> phases;
     for (int k = 0; k < sequence_length; ++k) {
       for (control::TickLevel& level : problem.levels)
         for (control::TickTask& task : level.tasks) {
@@ -95,11 +94,9 @@ void run(benchmark::State& state, control::BackEnd& back_end) {
   for (auto _ : state) {
     back_end.solve(ticks[k++ % ticks.size()], solution);
     failures += solution.status != control::Status::ok;
-    if (solution.status != control::Status::ok) fprintf(stderr, "%s %g %g %g it %d\n", solution.message.c_str(), solution.kkt.stationarity, solution.kkt.primal, solution.kkt.complementarity, solution.iterations);
     held += solution.rows_held;
     benchmark::DoNotOptimize(solution.torque.data());
   }
-  state.counters["iterations"] = solution.iterations;
   state.counters["failures"] = failures;
   state.counters["rows_held"] = benchmark::Counter(held, benchmark::Counter::kAvgIterations);
 }

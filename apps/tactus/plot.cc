@@ -20,6 +20,8 @@ std::string px(double value) {
   return {text, std::to_chars(text, text + sizeof text, tenth == 0 ? 0 : tenth).ptr};
 }
 
+std::string pair(double x, double y) { return px(x) + " " + px(y); }
+
 std::string fixed(double value, int decimals) {
   char text[64];
   return {text, std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::fixed, decimals).ptr};
@@ -131,7 +133,8 @@ std::string path(const Line& line, const Frame& frame) {
       pen_down = false;
       continue;
     }
-    d += (pen_down ? "L" : "M") + px(frame.px_x(line.x[i])) + " " + px(frame.px_y(line.y[i]));
+    d += pen_down ? 'L' : 'M';
+    d += pair(frame.px_x(line.x[i]), frame.px_y(line.y[i]));
     pen_down = true;
   }
   return "<path d='" + d + "' fill='none' stroke='" + line.colour + "' stroke-width='1.4' stroke-linejoin='round'/>\n";
@@ -241,7 +244,8 @@ std::string draw(const PointPlot& plot, const Box& box) {
     const auto colour = static_cast<size_t>(std::clamp(fraction, 0.0, 1.0) * (colours - 1));
     const double at_x = frame.px_x(plot.x[i]), at_y = frame.px_y(plot.y[i]);
     if (!covered[colour].insert({std::lround(at_x), std::lround(at_y)}).second) continue;
-    paths[colour] += "M" + px(at_x) + " " + px(at_y) + "h0";
+    paths[colour] += 'M';
+    paths[colour] += pair(at_x, at_y) + "h0";
   }
   std::string svg = frame.axes(plot.title, plot.x_label, plot.y_label);
   for (size_t colour = 0; colour < paths.size(); ++colour) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <cstdio>
 
 namespace tactus::control {
 namespace {
@@ -11,7 +10,10 @@ namespace {
 enum RowState { row_free, row_active, row_set_aside };
 
 constexpr double violation_tolerance = 1e-13;                      // relative to the size of c and d
-constexpr double dependence_tolerance = 1e-10;                     // sine of a row's angle to the active ones
+// Sine of a row's angle to the active ones below which it depends on them.  The least is right for all but vertices at
+// which many more rows meet than there are dimensions; there it takes rounding for a direction, and the next is tried.
+constexpr double dependence_tolerances[] = {1e-10, 1e-8, 1e-6};
+constexpr double largest_change = 100;                             // of a multiplier, counted on by rounding
 constexpr double zero_change = 1e-12;                              // of a multiplier: rounding, not a direction
 constexpr int steps_per_row = 20;
 
@@ -33,21 +35,32 @@ LeastDistance::Outcome LeastDistance::solve(const ConstColumnsRef& rows, const E
                                             const Eigen::Ref<const Eigen::VectorXd>& c, bool release) {
   n_ = static_cast<int>(rows.rows());
   m_ = static_cast<int>(rows.cols());
+  Outcome outcome = Outcome::exhausted;
+  for (const double tolerance : dependence_tolerances) {
+    dependence_tolerance_ = tolerance;
+    outcome = attempt(rows, d, c, release);
+    if (outcome != Outcome::solved) continue;
+    updateViolations(rows, d);
+    if (m_ == 0 || violations_.head(m_).maxCoeff() <= 10 * tolerance * size_) return outcome;
+    outcome = Outcome::exhausted;
+  }
+  return outcome;
+}
+
+LeastDistance::Outcome LeastDistance::attempt(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d,
+                                              const Eigen::Ref<const Eigen::VectorXd>& c, bool release) {
   x_.head(n_) = c;
   multipliers_.head(m_).setZero();
   state_.head(m_).setZero();
   active_count_ = released_ = steps_ = 0;
   step_limit_ = steps_per_row * (m_ + 1);
   updateViolations(rows, d);
-  const double largest = m_ > 0 ? std::max(0.0, violations_.head(m_).maxCoeff()) : 0;
-  tolerance_ = violation_tolerance * (c.norm() + largest);
+  size_ = c.norm() + (m_ > 0 ? std::max(0.0, violations_.head(m_).maxCoeff()) : 0);
   for (int row = mostViolated(rows, d); row >= 0; row = mostViolated(rows, d)) {
     const Outcome outcome = addRow(rows, d, row, release);
     if (outcome != Outcome::solved) return outcome;
   }
-  Eigen::VectorXd xb=x_.head(n_);
   restoreAccuracy(d, c);
-  double w1=0; for(int j=0;j<m_;++j) {double q=rows.col(j).dot(x_.head(n_))-d[j]; w1=std::max(w1,q);} if (w1>1e-9) fprintf(stderr,"DBG after %g tol %g diff %g minR %g act %d of %d n %d\n", w1, tolerance_, (xb-x_.head(n_)).norm(), active_count_? R_.diagonal().head(active_count_).minCoeff():0., active_count_, m_, n_);
   return Outcome::solved;
 }
 
@@ -62,7 +75,7 @@ int LeastDistance::mostViolated(const ConstColumnsRef& rows, const Eigen::Ref<co
   int worst = -1;
   double largest = 0;
   for (int j = 0; j < m_; ++j) {
-    const double tolerance = tolerance_ + violation_tolerance * std::abs(d[j]);
+    const double tolerance = violation_tolerance * (size_ + std::abs(d[j]));
     if (state_[j] != row_free || violations_[j] <= tolerance || violations_[j] <= largest) continue;
     largest = violations_[j];
     worst = j;
@@ -116,14 +129,12 @@ LeastDistance::Outcome LeastDistance::addRow(const ConstColumnsRef& rows, const 
     r = projection_.head(active_count_);
     R_.topLeftCorner(active_count_, active_count_).triangularView<Eigen::Upper>().solveInPlace(r);
     const double free_part = z_.head(n_).squaredNorm();
-    const bool dependent = active_count_ == n_ || free_part < dependence_tolerance * dependence_tolerance;
+    const bool dependent = active_count_ == n_ || free_part < dependence_tolerance_ * dependence_tolerance_;
     const double violation = rows.col(row).dot(x_.head(n_)) - d[row];
-    const double size = tolerance_ / violation_tolerance + std::abs(d[row]);
     const double largest = active_count_ > 0 ? r.cwiseAbs().maxCoeff() : 0;
     // A row that the active ones imply is violated by their rounding.
-    if (dependent && violation <= dependence_tolerance * size * (1 + largest)) {
+    if (dependent && violation <= dependence_tolerance_ * (size_ + std::abs(d[row])) * (1 + std::min(largest, largest_change))) {
       state_[row] = row_set_aside;
- if (violation>1e-9) fprintf(stderr,"DBG aside viol %g largest %g act %d minR %g\n", violation, largest, active_count_, R_.diagonal().head(active_count_).minCoeff());
       return Outcome::solved;
     }
 

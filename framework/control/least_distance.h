@@ -35,6 +35,8 @@ class LeastDistance {
   int steps() const { return steps_; }
 
  private:
+  Outcome attempt(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d,
+                  const Eigen::Ref<const Eigen::VectorXd>& c, bool release);
   void updateViolations(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d);
   int mostViolated(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d);
   Outcome addRow(const ConstColumnsRef& rows, const Eigen::Ref<const Eigen::VectorXd>& d, int row, bool release);
@@ -45,7 +47,8 @@ class LeastDistance {
 
   int n_ = 0;
   int m_ = 0;
-  double tolerance_ = 0;                                           // absolute, of a violation
+  double size_ = 0;                                                // of c and of the largest violation
+  double dependence_tolerance_ = 0;
   int active_count_ = 0;
   int released_ = 0;
   int steps_ = 0;

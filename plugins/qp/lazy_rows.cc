@@ -6,7 +6,6 @@ namespace tactus::qp {
 namespace {
 
 constexpr int max_rounds = 20;                                     // 1 to 3 are usual
-constexpr double start_reach = -0.3;                               // rows so near their bounds at v = 0 are likely to matter
 constexpr double kept = 1e-9;                                      // violation of a row that counts as none
 
 }  // namespace
@@ -21,7 +20,7 @@ SolverReport LazyRows::solve(const LeastDistanceProgramme& programme, double nea
   chosen_.clear();
   is_chosen_.assign(programme.count(), false);
   SolverReport report{"no row is violated", 0};
-  for (int round = 0; addViolated(programme, v, round == 0 ? start_reach : kept); ++round) {
+  for (int round = 0; addViolated(programme, v, round == 0 ? 0 : kept); ++round) {
     if (round == max_rounds) {                                     // all of them, then
       for (int j = 0; j < programme.count(); ++j)
         if (!is_chosen_[j]) chosen_.push_back(j);

@@ -8,7 +8,7 @@
 
 namespace tactus::qp {
 
-/// Hands a solver only the rows that matter.  It starts with the rows violated, or nearly so, at v = 0; while its answer violates
+/// Hands a solver only the rows that matter.  It starts with the rows violated at v = 0; while its answer violates
 /// others, they are added.  An answer to some rows that keeps all of them is the answer to all of them.  The optimum
 /// lies in the span of the rows at their bounds, so the solver works in coordinates of that span.  Of the 90 rows of a
 /// tick, mostly limits, some 15 remain.

@@ -114,8 +114,9 @@ TEST(PassiveDs, StorageRisesByNoMoreThanTheWorkDoneOnIt) {
     }
     excess[fine] = worst;
   }
-  EXPECT_LT(excess[0], 2e-3);
-  EXPECT_LT(excess[1], 0.7 * excess[0] + 1e-6) << "what is left is the integrator's, and shrinks with the step";
+  // What is left belongs to the explicit integrator (½‖Δv‖² a step): it halves with the step and vanishes in the limit.
+  EXPECT_LT(excess[1], 0.6 * excess[0] + 1e-6);
+  EXPECT_LT(2 * excess[1] - excess[0], 5e-4) << "extrapolated to a step of zero";
 }
 
 TEST(PassiveDs, AgainstADragNoMoreComesOutThanWasIn) {
