@@ -50,15 +50,18 @@ class ExplorationProblems {
     problem.levels = {{1, {}, {hold, shy}}, {2, {}, {limits}}, {3, {}, {close, sweep, rest}}, {4, {}, {arm}}};
     for (control::TickLevel& level : problem.levels)
       for (control::TickTask& task : level.tasks) task.rows = task.capacity();
-    problem.torque_limits = control::TorqueLimits{Eigen::VectorXd::Constant(dof, -20), Eigen::VectorXd::Constant(dof, 20), {}};
+    const Eigen::VectorXd limit = Eigen::VectorXd::Constant(dof, 20);
+    problem.torque_limits = control::TorqueLimits{-limit, limit, {}};
 
     std::vector<control::TickProblem> ticks;
     for (int k = 0; k < sequence_length; ++k) {
       for (control::TickLevel& level : problem.levels)
         for (control::TickTask& task : level.tasks) {
-          for (int r = 0; r < task.rows; ++r) task.force[r] = task.name == "hold" ? 0.5 : 0.3 * std::sin(0.05 * k + 7.0 * r);
+          for (int r = 0; r < task.rows; ++r)
+            task.force[r] = task.name == "hold" ? 0.5 : 0.3 * std::sin(0.05 * k + 7.0 * r);
           if (task.name == "limits" || task.name == "shy") task.force.setZero();
-          task.jacobian = task.jacobian.unaryExpr([this](double x) { return x == 0 ? x : x * (1 + 1e-3 * normal_(random_)); });
+          task.jacobian =
+              task.jacobian.unaryExpr([this](double x) { return x == 0 ? x : x * (1 + 1e-3 * normal_(random_)); });
         }
       ticks.push_back(problem);
     }

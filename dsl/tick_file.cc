@@ -23,7 +23,9 @@ constexpr const char* file_format = "tactus-tick/1";
 constexpr double symmetry_tolerance = 1e-9;                        // relative to the largest entry
 constexpr int friction_rows = 3;
 
-std::string count(std::size_t n, const std::string& noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
+std::string count(std::size_t n, const std::string& noun) {
+  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
+}
 
 /// A value of the document with the path that leads to it.
 class Node {

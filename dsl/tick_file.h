@@ -25,8 +25,8 @@ class TickFileError : public std::runtime_error {
 
 /// Reads a file; throws runtime::FileError or TickFileError.
 control::TickProblem readTickProblem(const std::string& file);
-/// Reads a text; throws TickFileError.  Strict: an unknown, missing or repeated key is an error, and so are sizes that do
-/// not fit and a mass matrix that is not symmetric positive definite.  Levels may come in any order.
+/// Reads a text; throws TickFileError.  Strict: an unknown, missing or repeated key is an error, and so are sizes that
+/// do not fit and a mass matrix that is not symmetric positive definite.  Levels may come in any order.
 control::TickProblem parseTickProblem(const std::string& text);
 
 std::string tickProblemToJson(const control::TickProblem& problem);

@@ -176,7 +176,7 @@ int compare(const CompareArguments& arguments, bool json) {
     std::vector<runtime::Observer*> sampling;
     if (back_ends.empty()) sampling.push_back(&sampler);
     back_ends.push_back({{"backend", label}, {"closed_loop", closedLoop(session, label, sampling, interrupt.stop())}});
-    if (interrupt.stop()) return exit_interrupted;
+    if (interrupt.stop()) throw Interrupted();
     if (back_ends.back()["closed_loop"]["status"] != "done") code = exit_numerical;
   }
   Answers reference;
@@ -210,7 +210,8 @@ void addCompare(CLI::App& program, Context& context) {
       ->check(positive())
       ->capture_default_str();
   arguments->declare(*command);
-  command->add_flag("--json", context.json, "{stack, seed, reference, sampled_ticks, backends: [{backend, closed_loop, same_states}]}");
+  command->add_flag("--json", context.json,
+                    "{stack, seed, reference, sampled_ticks, backends: [{backend, closed_loop, same_states}]}");
   command->footer(R"(A back end may name its variants: qp/nlopt, null-space/augmented, null-space/successive/one-pass.
 
 Examples:

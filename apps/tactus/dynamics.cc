@@ -134,7 +134,9 @@ int printDynamics(const DynamicsArguments& arguments) {
 void addDynamics(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("dynamics", "Rigid-body dynamics of a robot at one state");
   const auto arguments = std::make_shared<DynamicsArguments>();
-  command->add_option("MODEL", arguments->model, "A URDF file, or the name of a shipped robot")->required()->type_name("");
+  command->add_option("MODEL", arguments->model, "A URDF file, or the name of a shipped robot")
+      ->required()
+      ->type_name("");
   const auto vector = [&](const std::string& name, std::string& value, const std::string& description) {
     return command->add_option(name, value, description)->type_name("A,B,…");
   };
@@ -144,9 +146,10 @@ void addDynamics(CLI::App& program, Context& context) {
   vector("--tau", arguments->tau, "Joint torques: adds forward_dynamics");
   vector("--gravity", arguments->gravity, "Free-fall acceleration in the world; 0,0,-9.81 without it");
   command->add_flag("--json", context.json, "JSON on stdout, which is also what is printed without it");
-  command->footer(R"(Prints {joints, mass_matrix, bias, gravity, inverse_dynamics, forward_dynamics, frames: {link: {position, rotation,
-jacobian}}}: bias holds Coriolis, centrifugal and gravity torques; Jacobians have linear rows first, in world axes,
-at the link's origin.  A robot without masses gets joints and frames alone.
+  command->footer(
+      R"(Prints {joints, mass_matrix, bias, gravity, inverse_dynamics, forward_dynamics, frames: {link:
+{position, rotation, jacobian}}}: bias holds Coriolis, centrifugal and gravity torques; Jacobians have linear rows
+first, in world axes, at the link's origin.  A robot without masses gets joints and frames alone.
 
 Examples:
   tactus dynamics robot.urdf --q 0.1,-0.2,0.3 --json

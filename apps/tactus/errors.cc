@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/tactus/interrupt.h"
 #include "framework/dynamics/model.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/plant.h"
@@ -54,6 +55,8 @@ int reportErrors(const Context& context) {
     return exitCode(invalid.diagnostics);
   } catch (const UsageError& error) {
     return say(context, exit_usage, error.what());
+  } catch (const Interrupted& error) {
+    return say(context, exit_interrupted, error.what());
   } catch (const runtime::PluginError& error) {
     return say(context, exit_plugin, error.what());
   } catch (const dynamics::ModelError& error) {

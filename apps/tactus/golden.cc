@@ -11,6 +11,7 @@
 #include "apps/tactus/text.h"
 #include "apps/tactus/tolerances.h"
 #include "apps/tactus/versions.h"
+#include "dsl/model_search.h"
 #include "framework/runtime/file_error.h"
 
 namespace tactus::app {
@@ -42,7 +43,8 @@ class TemporaryFolder {
 
 /// A case is a folder, or the name of one in tests/golden.
 fs::path caseFolder(const std::string& name) {
-  return fs::is_directory(name) || name.find('/') != std::string::npos ? fs::path(name) : fs::path("tests/golden") / name;
+  return fs::is_directory(name) || name.find('/') != std::string::npos ? fs::path(name)
+                                                                       : fs::path("tests/golden") / name;
 }
 
 /// FNV-1a, 64 bit: tells whether an input is the one that was recorded.
@@ -70,7 +72,8 @@ std::string processor() {
 
 ordered_json provenance(const Session& session, const std::string& reason, Program& program) {
   ordered_json inputs = ordered_json::object();
-  for (const auto& [file, content] : session.stack().files) inputs[fs::path(file).filename().string()] = hashOf(content);
+  for (const auto& [file, content] : session.stack().files)
+    inputs[fs::path(file).filename().string()] = hashOf(content);
   ordered_json plugins = ordered_json::object();
   for (const runtime::LoadedPlugin& plugin : program.plugins().loaded()) plugins[plugin.name] = plugin.version;
   return {{"reason", reason},
@@ -83,14 +86,14 @@ ordered_json provenance(const Session& session, const std::string& reason, Progr
           {"inputs", inputs}};
 }
 
-/// The resolved stack with files named from the case's folder: a case must read on another machine, too.
+/// The resolved stack without places of this machine, so that a case reads on another: a robot found by its name keeps
+/// the name, one that stands beside the stack is named from the case's folder.
 std::string portableStack(const dsl::Stack& stack, const fs::path& folder) {
   std::string xml = dsl::writeResolved(stack);
-  for (const auto& [file, content] : stack.files) {
-    const std::string absolute = fs::absolute(file).lexically_normal().string();
-    const std::string relative = fs::relative(absolute, folder).string();
-    for (size_t at; (at = xml.find(absolute)) != std::string::npos;) xml.replace(at, absolute.size(), relative);
-  }
+  const std::string absolute = fs::absolute(stack.robot_file).string();
+  const bool by_name = dsl::findModel(stack.robot_model, stack.file, {}).file.empty();
+  const std::string portable = by_name ? stack.robot_model : fs::relative(absolute, folder).string();
+  if (const size_t at = xml.find(absolute); at != std::string::npos) xml.replace(at, absolute.size(), portable);
   return xml;
 }
 
@@ -101,7 +104,7 @@ std::string runInto(const std::string& folder, Session& session) {
   const runtime::LoopResult result = session.run({recorder.get()}, interrupt.stop());
   recorder->close();
   if (result.ending == runtime::Ending::plant_error) throw runtime::PlantError(result.message);
-  if (result.ending == runtime::Ending::interrupted) throw runtime::FileError(folder, "the run was interrupted");
+  if (result.ending == runtime::Ending::interrupted) throw Interrupted();
   return folder + "/log.csv";
 }
 
@@ -112,13 +115,15 @@ int record(const GoldenArguments& arguments) {
   const fs::path folder = caseFolder(arguments.cases.front());
   const std::string stack_file = (folder / "stack.xml").string();
   Program program(arguments.plugins);
-  fs::create_directories(folder);
-  if (arguments.stack.file.empty()) {
-    if (!fs::exists(stack_file)) throw UsageError("golden record: a new case needs --stack FILE");
-  } else {
-    // The case keeps the stack with everything resolved, so that it stands alone.
-    runtime::writeFile(stack_file, portableStack(readAloud(program, arguments.stack), folder));
+  StackOptions source = arguments.stack;
+  if (source.file.empty()) source.file = stack_file;
+  if (!fs::exists(source.file) && arguments.stack.file.empty()) {
+    throw UsageError("golden record: a new case needs --stack FILE");
   }
+  // The case keeps the stack with everything resolved, so that it stands alone.
+  const dsl::Stack stack = readAloud(program, source);
+  fs::create_directories(folder);
+  runtime::writeFile(stack_file, portableStack(stack, folder));
   Session session(readAloud(program, {stack_file, {}, {}, {}, {}}), program.registry());
   const TemporaryFolder temporary;
   const std::string log = runInto(temporary.path, session);
@@ -181,7 +186,9 @@ void addGolden(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("golden", "Recorded runs that must repeat");
   command->require_subcommand(0, 1);
   const auto arguments = std::make_shared<GoldenArguments>();
-  constexpr const char* examples = R"(A case is a folder with stack.xml, expected.csv, tolerances.xml and provenance.json: a path, or a name in tests/golden.
+  constexpr const char* examples =
+      R"(A case is a folder with stack.xml, expected.csv, tolerances.xml and provenance.json: a path, or a name in
+tests/golden.
 
 Examples:
   tactus golden record table-short --stack examples/explore_table/stack.xml --duration 2 --reason "new contact law"
@@ -189,22 +196,30 @@ Examples:
   command->footer(examples);
 
   CLI::App* record_command = command->add_subcommand("record", "Run a stack and keep its log as the golden one");
-  record_command->add_option("CASE", arguments->cases, "Folder or name of the case")->required()->expected(1)->type_name("");
+  record_command->add_option("CASE", arguments->cases, "Folder or name of the case")
+      ->required()
+      ->expected(1)
+      ->type_name("");
   record_command->add_option("--stack", arguments->stack.file, "The stack; that of the case itself without it")
       ->type_name("FILE");
-  record_command->add_option("--reason", arguments->reason, "Why the golden values are new")->required()->type_name("TEXT");
-  record_command->add_option("--backend", arguments->stack.back_end, "Back end instead of the stack's")->type_name("BACKEND");
+  record_command->add_option("--reason", arguments->reason, "Why the golden values are new")
+      ->required()
+      ->type_name("TEXT");
+  record_command->add_option("--backend", arguments->stack.back_end, "Back end instead of the stack's")
+      ->type_name("BACKEND");
   arguments->declare(*record_command);
   record_command->footer(examples);
   record_command->callback([=, &context] { context.action = [=] { return record(*arguments); }; });
 
   CLI::App* verify_command = command->add_subcommand("verify", "Run cases again and compare; writes nothing into them");
   verify_command->add_option("CASE", arguments->cases, "Folders or names of cases")->required()->type_name("");
-  verify_command->add_option("--keep", arguments->keep, "Folder that gets the new logs as <case>.csv")->type_name("DIR");
+  verify_command->add_option("--keep", arguments->keep, "Folder that gets the new logs as <case>.csv")
+      ->type_name("DIR");
   declarePlugins(*verify_command, arguments->plugins);
   verify_command->add_flag("--json", context.json, "{cases: [{case, passed, missing, extra, rows, failures}]}");
   verify_command->footer(examples);
-  verify_command->callback([=, &context] { context.action = [=, &context] { return verify(*arguments, context.json); }; });
+  verify_command->callback(
+      [=, &context] { context.action = [=, &context] { return verify(*arguments, context.json); }; });
 }
 
 }  // namespace tactus::app

@@ -46,7 +46,9 @@ std::string describeExtras(const CLI::App* command) {
   for (const std::string& word : command->remaining()) {
     if (!message.empty()) message += "\n  ";
     const bool is_option = word.starts_with("-");
-    const char* kind = is_option ? "unknown option '" : commands.empty() ? "unexpected argument '" : "unknown command '";
+    const char* kind = is_option          ? "unknown option '"
+                       : commands.empty() ? "unexpected argument '"
+                                          : "unknown command '";
     const std::string nearest = dsl::nearestName(word.substr(0, word.find('=')), is_option ? options : commands);
     message += kind + word + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?");
     // What follows a wrong command belongs to it.

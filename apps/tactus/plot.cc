@@ -24,7 +24,8 @@ std::string pair(double x, double y) { return px(x) + " " + px(y); }
 
 std::string fixed(double value, int decimals) {
   char text[64];
-  return {text, std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::fixed, decimals).ptr};
+  return {text,
+          std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::fixed, decimals).ptr};
 }
 
 struct Range {
@@ -85,8 +86,9 @@ class Frame {
     };
     ticks(x_, static_cast<int>(std::max(2.0, area_.width / 80)), [&](double value, const std::string& text) {
       const std::string at = px(px_x(value));
-      svg += "<path d='M" + at + " " + px(area_.y) + "v" + px(area_.height) + "' stroke='#e7e7e2' fill='none'/><text x='" +
-             at + "' y='" + px(area_.y + area_.height + 16) + "' text-anchor='middle' fill='#555'>" + text + "</text>\n";
+      svg += "<path d='M" + at + " " + px(area_.y) + "v" + px(area_.height) +
+             "' stroke='#e7e7e2' fill='none'/><text x='" + at + "' y='" + px(area_.y + area_.height + 16) +
+             "' text-anchor='middle' fill='#555'>" + text + "</text>\n";
     });
     ticks(y_, static_cast<int>(std::max(2.0, area_.height / 32)), [&](double value, const std::string& text) {
       const double at = px_y(value);
@@ -96,10 +98,10 @@ class Frame {
     });
     const double middle = area_.y + area_.height / 2;
     svg += "<text x='" + px(area_.x) + "' y='" + px(box_.y + 20) + "' font-size='14' font-weight='600' fill='#222'>" +
-           escaped(title) + "</text>\n<text x='" + px(area_.x + area_.width / 2) + "' y='" + px(box_.y + box_.height - 8) +
-           "' text-anchor='middle' fill='#333'>" + escaped(x_label) + "</text>\n<text transform='translate(" +
-           px(box_.x + 16) + " " + px(middle) + ") rotate(-90)' text-anchor='middle' fill='#333'>" + escaped(y_label) +
-           "</text>\n";
+           escaped(title) + "</text>\n<text x='" + px(area_.x + area_.width / 2) + "' y='" +
+           px(box_.y + box_.height - 8) + "' text-anchor='middle' fill='#333'>" + escaped(x_label) +
+           "</text>\n<text transform='translate(" + px(box_.x + 16) + " " + px(middle) +
+           ") rotate(-90)' text-anchor='middle' fill='#333'>" + escaped(y_label) + "</text>\n";
     return svg;
   }
 
@@ -142,13 +144,21 @@ std::string path(const Line& line, const Frame& frame) {
 
 /// Viridis, by linear interpolation between nine of its colours.
 std::string viridis(double fraction) {
-  constexpr std::array<std::array<int, 3>, 9> stops{{{68, 1, 84}, {71, 44, 122}, {59, 81, 139}, {44, 113, 142}, {33, 144, 141},
-                                                     {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}}};
+  constexpr std::array<std::array<int, 3>, 9> stops{{{68, 1, 84},
+                                                     {71, 44, 122},
+                                                     {59, 81, 139},
+                                                     {44, 113, 142},
+                                                     {33, 144, 141},
+                                                     {39, 173, 129},
+                                                     {92, 200, 99},
+                                                     {170, 220, 50},
+                                                     {253, 231, 37}}};
   const double at = std::clamp(fraction, 0.0, 1.0) * (stops.size() - 1);
   const size_t i = std::min(static_cast<size_t>(at), stops.size() - 2);
   std::string colour = "#";
   for (size_t c = 0; c < 3; ++c) {
-    const int value = static_cast<int>(std::lround(stops[i][c] + (at - static_cast<double>(i)) * (stops[i + 1][c] - stops[i][c])));
+    const int value =
+        static_cast<int>(std::lround(stops[i][c] + (at - static_cast<double>(i)) * (stops[i + 1][c] - stops[i][c])));
     colour += "0123456789abcdef"[value / 16];
     colour += "0123456789abcdef"[value % 16];
   }
@@ -166,7 +176,8 @@ std::string drawMarker(const Marker& marker, const Frame& frame) {
   const std::string shape =
       marker.ring ? "<circle cx='" + px(x) + "' cy='" + px(y) + "' r='9' fill='none'"
                   : "<path d='M" + px(x - 6) + " " + px(y - 6) + "l12 12m0 -12l-12 12' fill='none'";
-  return shape + " stroke='#d62728' stroke-width='2.2'/>\n" + haloText(x + 13, y + (marker.ring ? -7 : 14), marker.label);
+  return shape + " stroke='#d62728' stroke-width='2.2'/>\n" +
+         haloText(x + 13, y + (marker.ring ? -7 : 14), marker.label);
 }
 
 }  // namespace
@@ -275,8 +286,8 @@ std::string drawColourBar(const std::string& label, double value_max, const Box&
 }
 
 std::string svgDocument(double width, double height, const std::string& content) {
-  return "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + px(width) + " " + px(height) + "' width='" + px(width) +
-         "' height='" + px(height) +
+  return "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + px(width) + " " + px(height) + "' width='" +
+         px(width) + "' height='" + px(height) +
          "' font-family=\"system-ui, 'DejaVu Sans', 'Liberation Sans', sans-serif\" font-size='12'>\n"
          "<rect width='100%' height='100%' fill='#fff'/>\n" +
          content + "</svg>\n";

@@ -18,7 +18,8 @@ std::vector<std::string> pluginFolders(const std::vector<std::string>& explicit_
   for (const std::string& path : explicit_plugins) {
     if (std::filesystem::is_directory(path)) folders.push_back(path);
   }
-  for (std::string& folder : runtime::foldersFromEnvironment("TACTUS_PLUGIN_PATH")) folders.push_back(std::move(folder));
+  for (std::string& folder : runtime::foldersFromEnvironment("TACTUS_PLUGIN_PATH"))
+    folders.push_back(std::move(folder));
   folders.push_back(runtime::shippedPluginFolder());
   return folders;
 }

@@ -86,8 +86,8 @@ std::vector<Marker> featureMarkers(const ordered_json& run, int horizontal, int 
   std::vector<Marker> markers;
   const auto add = [&](const ordered_json& point, bool ring, const std::string& label) {
     const double v = point[static_cast<size_t>(vertical)].get<double>();
-    markers.push_back({point[static_cast<size_t>(horizontal)].get<double>(), vertical == 2 ? (v - plane) * 1000 : v, ring,
-                       label});
+    markers.push_back(
+        {point[static_cast<size_t>(horizontal)].get<double>(), vertical == 2 ? (v - plane) * 1000 : v, ring, label});
   };
   for (const ordered_json& feature : run["features"]) {
     const std::string name = feature["name"].get<std::string>();
@@ -109,8 +109,10 @@ std::string drawTouchedPoints(const RunData& data) {
       1100, 560,
       draw(view("Touched points from above", "x (m)", "y (m)", cloud.x, cloud.y, 0, 1), {0, 0, 560, 510}) +
           drawColourBar("height above the lowest plane (mm)", cloud.height_max, {62, 520, 480, 12}) +
-          draw(view("From the side: x and height", "x (m)", above, cloud.x, cloud.height_mm, 0, 2), {560, 0, 540, 280}) +
-          draw(view("From the side: y and height", "y (m)", above, cloud.y, cloud.height_mm, 1, 2), {560, 280, 540, 280}));
+          draw(view("From the side: x and height", "x (m)", above, cloud.x, cloud.height_mm, 0, 2),
+               {560, 0, 540, 280}) +
+          draw(view("From the side: y and height", "y (m)", above, cloud.y, cloud.height_mm, 1, 2),
+               {560, 280, 540, 280}));
 }
 
 /// One small plot for the error of each task.
@@ -152,7 +154,8 @@ std::string facts(const ordered_json& run) {
       {"back end", run["backend"].get<std::string>()},
       {"seed", std::to_string(run["seed"].get<std::uint64_t>())},
       {"status", run["status"].get<std::string>()},
-      {"simulated", number(run["duration_s"]) + " s, " + rounded(run["realtime_factor"].get<double>(), 3) + " × real time"},
+      {"simulated",
+       number(run["duration_s"]) + " s, " + rounded(run["realtime_factor"].get<double>(), 3) + " × real time"},
       {"tick", number(run["tick_us"]["median"]) + " µs median, " + number(run["tick_us"]["p99"]) + " µs p99"},
       {"fallbacks", std::to_string(run["ticks"]["fallback"].get<long>())},
       {"ticks with lost rank", std::to_string(run["ticks"]["lost_rank"].get<long>())}};
@@ -165,7 +168,8 @@ std::string facts(const ordered_json& run) {
 }
 
 constexpr const char* style = R"(
-body { font-family: system-ui, 'DejaVu Sans', 'Liberation Sans', sans-serif; color: #222; background: #f6f6f3; margin: 0; }
+body { font-family: system-ui, 'DejaVu Sans', 'Liberation Sans', sans-serif; color: #222; background: #f6f6f3;
+       margin: 0; }
 main { max-width: 1140px; margin: 0 auto; padding: 24px; }
 h1 { font-size: 24px; font-weight: 650; margin: 8px 0 20px; }
 section { background: #fff; border: 1px solid #e2e2dc; border-radius: 8px; padding: 16px; margin-bottom: 20px; }
@@ -181,7 +185,8 @@ std::string page(const RunData& data, const std::string& contacts, const std::st
   const std::string title = escaped(data.run["stack"].get<std::string>());
   std::string html = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" + title +
                      "</title><style>" + style + "</style></head><body><main>\n<h1>" + title + "</h1>\n";
-  html += "<section class='columns'><div>" + metricsTable(data.run) + "</div><div>" + facts(data.run) + "</div></section>\n";
+  html += "<section class='columns'><div>" + metricsTable(data.run) + "</div><div>" + facts(data.run) +
+          "</div></section>\n";
   html += "<section>" + contacts + "</section>\n";
   if (data.touched.rows() > 0) html += "<section>" + touched + "</section>\n";
   html += "<section>" + drawTaskErrors(data) + "</section>\n";

@@ -61,12 +61,15 @@ void addRun(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("run", "Run a stack on the simulated robot and keep what happened");
   const auto arguments = std::make_shared<RunArguments>();
   command->add_option("STACK", arguments->stack.file, "The stack's XML file")->required()->type_name("");
-  command->add_option("--backend", arguments->stack.back_end, "Back end instead of the stack's: null-space, qp/nlopt, …")
+  command
+      ->add_option("--backend", arguments->stack.back_end, "Back end instead of the stack's: null-space, qp/nlopt, …")
       ->type_name("BACKEND");
   arguments->declare(*command);
-  command->add_option("--out", arguments->out, "Run folder; runs/<stack>-<back end>-seed<N> without it")->type_name("DIR");
+  command->add_option("--out", arguments->out, "Run folder; runs/<stack>-<back end>-seed<N> without it")
+      ->type_name("DIR");
   command->add_flag("--json", context.json, "Print run.json on stdout instead of the summary");
-  command->footer(R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml and report.html in the run folder.
+  command->footer(
+      R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml and report.html in the run folder.
 
 Examples:
   tactus run examples/explore_table/stack.xml

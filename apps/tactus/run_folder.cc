@@ -75,7 +75,8 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   if (!fs::is_empty(folder) && !isRunFolder(folder)) {
     throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
   }
-  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg"}) fs::remove(fs::path(folder) / picture);
+  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg"})
+    fs::remove(fs::path(folder) / picture);
   writeJson(folder + "/run.json", describeStart(session, "running"));
 }
 
@@ -136,8 +137,8 @@ std::string summaryTable(const ordered_json& run) {
   }
   text += "\n";
   if (run.contains("kkt_max")) {
-    text += "largest KKT residual: stationarity " + rounded(run["kkt_max"]["stationarity"].get<double>(), 3) + ", primal " +
-            rounded(run["kkt_max"]["primal"].get<double>(), 3) + "\n";
+    text += "largest KKT residual: stationarity " + rounded(run["kkt_max"]["stationarity"].get<double>(), 3) +
+            ", primal " + rounded(run["kkt_max"]["primal"].get<double>(), 3) + "\n";
   }
   std::vector<std::vector<std::string>> rows{{"metric", "value", "wanted", ""}};
   for (const auto& [name, value] : run["metrics"].items()) {

@@ -108,10 +108,15 @@ int solve(const SolveArguments& arguments, bool json) {
 void addSolve(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("solve", "Solve one tick problem from a file");
   const auto arguments = std::make_shared<SolveArguments>();
-  command->add_option("TICK", arguments->file, "A tick problem, JSON of the format tactus-tick/1")->required()->type_name("");
-  command->add_option("--backend", arguments->back_end, "null-space, qp, qp/nlopt, …")->required()->type_name("BACKEND");
+  command->add_option("TICK", arguments->file, "A tick problem, JSON of the format tactus-tick/1")
+      ->required()
+      ->type_name("");
+  command->add_option("--backend", arguments->back_end, "null-space, qp, qp/nlopt, …")
+      ->required()
+      ->type_name("BACKEND");
   for (const char* name : named_options) {
-    command->add_option(std::string("--") + name, arguments->named[name], "Option of the back end")->type_name("CHOICE");
+    command->add_option(std::string("--") + name, arguments->named[name], "Option of the back end")
+        ->type_name("CHOICE");
   }
   command->add_option("--option", arguments->others, "Any other option of the back end")
       ->type_name("NAME=VALUE")
@@ -122,7 +127,7 @@ void addSolve(CLI::App& program, Context& context) {
 
 Examples:
   tactus solve tick.json --backend null-space --projection augmented --inequalities exact --json
-  tactus solve tick.json --backend qp --solver nlopt --objective torque --metric inertia --option force-weight=0.1 --json)");
+  tactus solve tick.json --backend qp/nlopt --objective torque --metric inertia --option force-weight=0.1 --json)");
   command->callback([=, &context] { context.action = [=, &context] { return solve(*arguments, context.json); }; });
 }
 

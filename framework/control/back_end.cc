@@ -3,7 +3,7 @@
 namespace tactus::control {
 namespace {
 
-constexpr int message_capacity = 256;                              // characters, so that a tick's message takes no memory
+constexpr int message_capacity = 256;                              // characters: a tick's message takes no memory
 
 }  // namespace
 

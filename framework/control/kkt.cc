@@ -64,7 +64,7 @@ KktResidual KktCheck::residual(const ConstrainedLeastSquares& programme, const E
   for (int i = 0; i < near; ++i) rows_.col(i) = programme.G.row(near_[i]).head(n).transpose();
   reduce(rows_);
   RowMajorMatrix scaled = rows_.bottomRows(free);
-  L.solveInPlace(scaled);
+  if (near > 0) L.solveInPlace(scaled);
   for (int i = 0; i < near; ++i) {
     const double norm = scaled.col(i).norm();
     if (norm > 0) scaled.col(i) /= norm;

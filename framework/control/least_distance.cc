@@ -133,7 +133,9 @@ LeastDistance::Outcome LeastDistance::addRow(const ConstColumnsRef& rows, const 
     const double violation = rows.col(row).dot(x_.head(n_)) - d[row];
     const double largest = active_count_ > 0 ? r.cwiseAbs().maxCoeff() : 0;
     // A row that the active ones imply is violated by their rounding.
-    if (dependent && violation <= dependence_tolerance_ * (size_ + std::abs(d[row])) * (1 + std::min(largest, largest_change))) {
+    const double rounding =
+        dependence_tolerance_ * (size_ + std::abs(d[row])) * (1 + std::min(largest, largest_change));
+    if (dependent && violation <= rounding) {
       state_[row] = row_set_aside;
       return Outcome::solved;
     }

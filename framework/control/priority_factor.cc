@@ -8,7 +8,8 @@ namespace {
 
 constexpr int max_sweeps = 30;                                     // of Jacobi rotations; 6 to 8 are usual
 constexpr double rotation_tolerance = 1e-15;                       // cosine below which two rows count as orthogonal
-constexpr double recompute_below = 1e-8;                           // of a downdated squared norm, Drmač and Bujanović 2008
+// A squared norm that downdating has made so small is computed afresh (Drmač and Bujanović 2008).
+constexpr double recompute_below = 1e-8;
 constexpr double negligible_ratio = 1e-3;                          // to the rank tolerance
 
 }  // namespace

@@ -42,7 +42,7 @@ class WhitenedProblem {
   int rowCount() const { return count_; }
   int firstInequality() const { return first_inequality_; }
   auto row(int j) const { return columns_.col(j); }                ///< unit, dof
-  double norm(int j) const { return norms_[j]; }                   ///< of row j in the M⁻¹ metric, before it became unit
+  double norm(int j) const { return norms_[j]; }                   ///< M⁻¹ norm of row j before it became unit
   const ActiveRow& origin(int j) const { return origins_[j]; }     ///< where row j stands in the problem
 
   /// y°_i = L⁻¹ Σ JᵀF over the level's tasks.

@@ -14,7 +14,7 @@ namespace tactus::runtime {
 class CsvWriter {
  public:
   CsvWriter(const std::string& path, const std::vector<std::string>& columns);
-  ~CsvWriter();                                                    ///< writes what is left; errors are lost, call close()
+  ~CsvWriter();                                                    ///< writes what is left; only close() tells errors
   CsvWriter(const CsvWriter&) = delete;
   CsvWriter& operator=(const CsvWriter&) = delete;
 

@@ -8,7 +8,8 @@ namespace tactus::runtime {
 /// A file that could not be opened, read or written; the message starts with its path.
 class FileError : public std::runtime_error {
  public:
-  FileError(const std::string& path, const std::string& reason) : std::runtime_error(path + ": " + reason), path(path) {}
+  FileError(const std::string& path, const std::string& reason)
+      : std::runtime_error(path + ": " + reason), path(path) {}
   /// The reason is that of `error_number` (errno).
   FileError(const std::string& path, const std::string& action, int error_number);
   std::string path;

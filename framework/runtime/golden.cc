@@ -118,8 +118,9 @@ std::string GoldenComparison::text() const {
   std::string text;
   if (!failures.empty()) {
     text += "first divergence: " + describe(failures.front()) + "\n";
-    const auto of_task = std::find_if(failures.begin(), failures.end(),
-                                      [](const ColumnFailure& failure) { return !taskOfColumn(failure.column).empty(); });
+    const auto of_task = std::find_if(failures.begin(), failures.end(), [](const ColumnFailure& failure) {
+      return !taskOfColumn(failure.column).empty();
+    });
     if (of_task != failures.end() && of_task != failures.begin()) {
       text += "first task to diverge: " + describe(*of_task) + "\n";
     }

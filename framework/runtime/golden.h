@@ -9,7 +9,7 @@ namespace tactus::runtime {
 
 /// How far a column may be from the golden one: |actual − expected| ≤ atol + rtol·|expected|.
 struct Tolerance {
-  std::string columns;                                             ///< glob over column names, '*' and '?'; '*' crosses '/'
+  std::string columns;                                             ///< glob with '*' and '?'; '*' crosses '/'
   double atol = 0;
   double rtol = 0;
 };
@@ -19,7 +19,7 @@ bool matchesGlob(std::string_view pattern, std::string_view text);
 
 struct ColumnFailure {
   std::string column;
-  double worst_ratio = 0;                                          ///< error over tolerance; infinite for NaN against a number
+  double worst_ratio = 0;                                          ///< error over tolerance; NaN against a number: ∞
   // Where the column first left its tolerance:
   size_t row = 0;
   double time = 0;                                                 ///< s

@@ -11,7 +11,7 @@ namespace tactus::runtime {
 
 enum class ColumnSet {
   standard,                                                        ///< columns="default"
-  all                                                              ///< the joints' positions, velocities and torques too
+  all                                                              ///< joint positions, velocities and torques too
 };
 
 /// The columns of log.csv: slash-separated names, `time` first, and where each value stands.

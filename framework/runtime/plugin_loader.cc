@@ -63,7 +63,8 @@ void checkDescriptor(const PluginDescriptor* descriptor, const std::string& path
     refuse(path, "built with " + what + " " + theirs + ", but this program has " + ours + "; " + action);
   };
   if (descriptor->abi != plugin_abi) {
-    rebuild("plugin ABI", std::to_string(descriptor->abi), std::to_string(plugin_abi), "rebuild it against this Tactus");
+    rebuild("plugin ABI", std::to_string(descriptor->abi), std::to_string(plugin_abi),
+            "rebuild it against this Tactus");
   }
   if (descriptor->size != sizeof(PluginDescriptor)) {
     rebuild("a descriptor of", std::to_string(descriptor->size) + " bytes",
@@ -95,7 +96,8 @@ void checkDescriptor(const PluginDescriptor* descriptor, const std::string& path
 }
 
 void registerInto(control::Registry& registry, const PluginDescriptor& descriptor, const std::string& path) {
-  const std::string failed = std::string("registration of plugin '") + descriptor.name + "' failed, nothing of it is kept: ";
+  const std::string failed =
+      std::string("registration of plugin '") + descriptor.name + "' failed, nothing of it is kept: ";
   control::Registry enlarged = registry;
   try {
     descriptor.register_elements(enlarged);

@@ -12,8 +12,8 @@ namespace tactus::runtime {
 struct RecorderOptions {
   std::string folder;                                              ///< exists already
   ColumnSet columns = ColumnSet::standard;
-  double row_rate = 100;                                           ///< Hz, rows of log.csv; at most the controller's rate
-  const ContactMetrics* contacts = nullptr;                        ///< observes before the recorder; null: no contact columns
+  double row_rate = 100;                                           ///< Hz, rows of log.csv; at most the control rate
+  const ContactMetrics* contacts = nullptr;                        ///< observes before the recorder; null: no columns
   const control::TouchedPoints* touched_points = nullptr;          ///< null: touched_points.csv keeps its header alone
 };
 

@@ -16,7 +16,7 @@ class RunStatistics final : public Observer {
   long ticks() const { return static_cast<long>(tick_us_.size()); }
   const std::vector<double>& tickTimes() const { return tick_us_; }  ///< µs
 
-  long fallbacks = 0;                                              ///< the back end failed; the last safe torque was kept
+  long fallbacks = 0;                                              ///< the back end failed; another torque was held
   long infeasible = 0;
   long limited = 0;                                                ///< the torque was cut to the actuators' limits
   long lost_rank = 0;                                              ///< a level's rows were dependent or faded

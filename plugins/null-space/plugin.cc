@@ -22,7 +22,7 @@ AttributeRow sigma(std::string name, std::string fallback, std::string text) {
   AttributeRow row;
   row.name = std::move(name);
   row.type = ValueType::real;
-  row.unit = "1";
+  row.unit = std::string("1");
   row.default_text = std::move(fallback);
   row.lower = 0;
   row.lower_open = true;

@@ -73,7 +73,7 @@ void LazyRows::polish(double near) {
   near_bounds_.resize(small_.count());
   Eigen::VectorXd exact = point_;
   int count = 0;
-  double reach = near;                                             // how far inside its bound a row may be and still join
+  double reach = near;                                             // how far inside its bound a row still joins
   for (int before = -1; count > before;) {
     before = count;
     for (int j = 0; j < small_.count(); ++j) {

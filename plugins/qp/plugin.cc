@@ -22,7 +22,7 @@ AttributeRow positive(std::string name, std::string fallback, std::string text) 
   AttributeRow row;
   row.name = std::move(name);
   row.type = ValueType::real;
-  row.unit = "1";
+  row.unit = std::string("1");
   row.default_text = std::move(fallback);
   row.lower = 0;
   row.lower_open = true;
@@ -51,8 +51,8 @@ void registerElements(control::Registry& registry) {
   row.source = "5.3.5-5.3.10";
   row.attributes = {
       choice("objective", "acceleration", {"torque", "acceleration"},
-             "acceleration: weighted distance from the accelerations that the levels ask for, which ranks them. torque: "
-             "the thesis's distance from the summed torque, which cannot rank tasks."),
+             "acceleration: weighted distance from the accelerations that the levels ask for, which ranks them. "
+             "torque: the thesis's distance from the summed torque, which cannot rank tasks."),
       choice("metric", "identity", {"identity", "inertia"},
              "Metric of the torque objective: identity as in the thesis, or the inverse inertia."),
       choice("solver", "ipopt", {"ipopt", "nlopt"},
@@ -61,8 +61,8 @@ void registerElements(control::Registry& registry) {
                "Weight of a level over that of the next; the first has 1. A level's own weight replaces it."),
       positive("force-weight", "1", "w_f, weight of the contact forces' distance from their references."),
       positive("regularisation", "0.01",
-               "w_r over the least level weight: price of torque, in the inverse-inertia metric, that no task asks for. "
-               "Acceleration objective only."),
+               "w_r over the least level weight: price of torque, in the inverse-inertia metric, that no task asks "
+               "for. Acceleration objective only."),
   };
   registry.addBackEnd(std::move(row), make);
 }

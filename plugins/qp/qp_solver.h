@@ -33,8 +33,8 @@ class QpSolver {
   virtual SolverReport doSolve(const LeastDistanceProgramme& programme, Eigen::VectorXd& v) = 0;
 };
 
-/// `tolerance` as Ipopt's tol, of a programme of order 1.  The default suits polishing; without it the weak directions of
-/// a torque magnify what is left by up to 1e7.
+/// `tolerance` as Ipopt's tol, of a programme of order 1.  The default suits polishing; without it the weak directions
+/// of a torque magnify what is left by up to 1e7.
 std::unique_ptr<QpSolver> makeIpoptSolver(double tolerance = 1e-6);
 std::unique_ptr<QpSolver> makeNloptSolver();
 

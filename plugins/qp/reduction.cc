@@ -54,7 +54,7 @@ void Reduction::reduce(const control::ConstrainedLeastSquares& programme) {
   }
   reduced_.rows.conservativeResize(free_, kept);
   reduced_.bounds.conservativeResize(kept);
-  triangle_.transpose().triangularView<Eigen::Lower>().solveInPlace(reduced_.rows);
+  if (kept > 0) triangle_.transpose().triangularView<Eigen::Lower>().solveInPlace(reduced_.rows);
   for (int j = 0; j < kept; ++j) {
     const double norm = reduced_.rows.col(j).norm();
     reduced_.rows.col(j) /= norm;

@@ -15,7 +15,7 @@ using control::WhitenedProblem;
 namespace {
 
 constexpr int rows_per_friction_contact = 3;
-constexpr int limits_per_force = 4;                                // two bounds, or the four sides of a pyramid a normal
+constexpr int limits_per_force = 4;                                // two bounds; a pyramid's four sides per three
 
 int contactRows(const TickProblem& shape) {
   int rows = 0;

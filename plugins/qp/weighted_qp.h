@@ -29,7 +29,7 @@ struct WeightedQpOptions {
 /// torque of all tasks that are not contacts, φ_j = ‖J_j‖ f_j are contact forces measured, as y is, by what they do in
 /// the M⁻¹ metric; τ = τ_s + J_cᵀ f.
 ///
-///   torque:        w ‖τ_s − Σ τ°_i‖² + w_f ‖f − f_ref‖²,  w = 1/Σ(1/w_i): the sum over levels with its closed form put in;
+///   torque:        w ‖τ_s − Σ τ°_i‖² + w_f ‖f − f_ref‖²,  w = 1/Σ(1/w_i): the sum over levels in closed form;
 ///   acceleration:  Σ w_i ‖J_i M⁻¹ τ_s − a_i‖² + w_f ‖f − f_ref‖² + w_r τ_sᵀ M⁻¹ τ_s,
 ///
 /// J_i a level's equality rows and its inequality rows with F ≠ 0, a_i = J_i M⁻¹ τ°_i or the acceleration that a task

@@ -8,8 +8,9 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(CompareCommand, SameStatesAndClosedLoop) {
-  const Outcome outcome = tactus({"compare", data("press.xml"), "--backends", "null-space,null-space/successive,qp/ipopt",
-                                  "--duration", "0.4", "--every", "10", "--json"});
+  const Outcome outcome =
+      tactus({"compare", data("press.xml"), "--backends", "null-space,null-space/successive,qp/ipopt", "--duration",
+              "0.4", "--every", "10", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["reference"], "null-space");

@@ -29,8 +29,8 @@ constexpr const char* pendulum = R"(<robot name="pendulum">
 TEST(DynamicsCommand, PendulumByHand) {
   const TemporaryFolder folder;
   const double q = 0.3, inertia = 2 * 0.25 + 0.01, gravity = 2 * 9.81 * 0.5 * std::sin(q);
-  const Outcome outcome = tactus({"dynamics", folder.write("p.urdf", pendulum), "--q", "0.3", "--qd", "-2", "--qdd", "4",
-                                  "--tau", "1", "--json"});
+  const Outcome outcome = tactus(
+      {"dynamics", folder.write("p.urdf", pendulum), "--q", "0.3", "--qd", "-2", "--qdd", "4", "--tau", "1", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["joints"], nlohmann::json({"hinge"}));

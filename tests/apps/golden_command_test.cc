@@ -43,7 +43,7 @@ TEST_F(GoldenCommandTest, CaseHasItsFourFiles) {
   EXPECT_EQ(provenance["duration_s"], 0.4);
   EXPECT_EQ(provenance["versions"]["tactus"], TACTUS_VERSION);
   EXPECT_TRUE(provenance["inputs"].contains("finger.urdf"));
-  EXPECT_THAT(stack(), Not(HasSubstr("\"/"))) << "a case names no place of this machine";
+  EXPECT_THAT(stack(), Not(HasSubstr("=\"/"))) << "a case names no place of this machine";
 }
 
 TEST_F(GoldenCommandTest, VerifyPassesAndWritesNothing) {
@@ -86,6 +86,12 @@ TEST_F(GoldenCommandTest, RenewingKeepsStackAndTolerances) {
   EXPECT_THAT(contentOf(golden() + "/provenance.json"), HasSubstr("renewed"));
 }
 
+TEST_F(GoldenCommandTest, RenewingTakesOptionsToo) {
+  ASSERT_EQ(tactus({"golden", "record", golden(), "--duration", "0.2", "--reason", "shorter"}).exit_code, 0);
+  EXPECT_THAT(stack(), HasSubstr("duration=\"0.2\""));
+  EXPECT_EQ(tactus({"golden", "verify", golden()}).exit_code, 0);
+}
+
 TEST_F(GoldenCommandTest, TolerancesAreChecked) {
   change("tolerances.xml", "rtol=", "rtoll=");
   const Outcome outcome = tactus({"golden", "verify", golden()});
@@ -96,7 +102,8 @@ TEST_F(GoldenCommandTest, TolerancesAreChecked) {
 TEST(GoldenCommand, RecordingWantsAReason) {
   const TemporaryFolder folder;
   EXPECT_EQ(tactus({"golden", "record", folder.file("case"), "--stack", data("press.xml")}).exit_code, 2);
-  const Outcome outcome = tactus({"golden", "record", folder.file("case"), "--stack", data("press.xml"), "--reason", " "});
+  const Outcome outcome =
+      tactus({"golden", "record", folder.file("case"), "--stack", data("press.xml"), "--reason", " "});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--reason must say why"));
   EXPECT_FALSE(fs::exists(folder.file("case")));
@@ -117,6 +124,20 @@ TEST(GoldenCases, AllPass) {
   ASSERT_GT(arguments.size(), 2u) << "no golden case";
   const Outcome outcome = tactus(arguments);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+TEST(GoldenCases, ShortMainJobFeelsOnePercentOfAGain) {
+  const TemporaryFolder folder;
+  const std::string golden = std::string(TACTUS_SOURCE_DIR) + "/tests/golden/explore-table-short";
+  fs::copy(golden, folder.file("changed"));
+  std::string stack = contentOf(golden + "/stack.xml");
+  const size_t elbow = stack.find("<posture name=\"elbow\""), gain = stack.find("stiffness=\"20\"", elbow);
+  ASSERT_NE(gain, std::string::npos);
+  folder.write("changed/stack.xml", stack.replace(gain, 14, "stiffness=\"20.2\""));
+  const Outcome outcome = tactus({"golden", "verify", folder.file("changed")});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("first divergence: "));
+  EXPECT_THAT(outcome.err, ::testing::ContainsRegex("task/[a-z-]+/[a-z_]+ [(]task '[a-z-]+'[)] at time [0-9.]+ s"));
 }
 
 }  // namespace

@@ -50,7 +50,9 @@ TEST(PluginsCommand, AStackFindsPluginsByNameInThePath) {
   const TemporaryFolder folder;
   const std::string stack = changedStack(folder, "<robot", "<plugin name=\"halfway\"/>\n  <robot");
   EXPECT_EQ(tactus({"check", stack}).exit_code, 4);
-  EXPECT_EQ(tactus({"check", stack}, {.environment = {std::string("TACTUS_PLUGIN_PATH=") + TEST_PLUGINS}}).exit_code, 0);
+  Settings with_path;
+  with_path.environment = {std::string("TACTUS_PLUGIN_PATH=") + TEST_PLUGINS};
+  EXPECT_EQ(tactus({"check", stack}, with_path).exit_code, 0);
   EXPECT_EQ(tactus({"check", stack, "--plugin", TEST_PLUGINS}).exit_code, 0);
 }
 

@@ -37,8 +37,8 @@ TEST(RunCommand, LeavesACompleteRunFolder) {
   const TemporaryFolder folder;
   const Outcome outcome = runInto(folder.file("run"));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  for (const char* file : {"run.json", "log.csv", "timing.csv", "touched_points.csv", "stack.resolved.xml", "report.html",
-                           "contacts.svg", "touched_points.svg"}) {
+  for (const char* file : {"run.json", "log.csv", "timing.csv", "touched_points.csv", "stack.resolved.xml",
+                           "report.html", "contacts.svg", "touched_points.svg"}) {
     EXPECT_GT(fs::file_size(folder.file("run") + "/" + file), 0u) << file;
   }
   EXPECT_THAT(outcome.out, HasSubstr("contact_force_mean_N"));
@@ -62,8 +62,9 @@ TEST(RunCommand, RunJsonHasTheKeysThatOthersRead) {
   for (const char* key : {"median", "p99", "p999"}) EXPECT_GT(run["tick_us"][key].get<double>(), 0) << key;
   EXPECT_EQ(run["ticks"]["total"], 1000);
   EXPECT_EQ(run["ticks"]["fallback"], 0);
-  for (const char* metric : {"contact_force_mean_N", "contact_force_max_mean_N", "contact_force_peak_N",
-                             "undesired_force_peak_N", "links_in_contact_mean", "contact_switches_per_s", "points_touched"}) {
+  for (const char* metric :
+       {"contact_force_mean_N", "contact_force_max_mean_N", "contact_force_peak_N", "undesired_force_peak_N",
+        "links_in_contact_mean", "contact_switches_per_s", "points_touched"}) {
     EXPECT_TRUE(run["metrics"][metric].is_number()) << metric;
   }
   EXPECT_GT(run["metrics"]["contact_force_mean_N"].get<double>(), 0);
@@ -112,7 +113,8 @@ TEST(RunCommand, ResolvedStackRunsToTheSameLog) {
 
 TEST(RunCommand, OptionsChangeTheRun) {
   const TemporaryFolder folder;
-  const nlohmann::json run = runInto(folder.file("a"), {"--backend", "qp/nlopt", "--duration", "0.05", "--json"}).json();
+  const nlohmann::json run =
+      runInto(folder.file("a"), {"--backend", "qp/nlopt", "--duration", "0.05", "--json"}).json();
   EXPECT_EQ(run["backend"], "qp");
   EXPECT_EQ(run["backend_options"]["solver"], "nlopt");
   EXPECT_EQ(run["duration_s"], 0.05);
@@ -121,8 +123,9 @@ TEST(RunCommand, OptionsChangeTheRun) {
 
 TEST(RunCommand, DefaultFolderSaysWhatRan) {
   const TemporaryFolder folder;
-  const Outcome outcome =
-      tactus({"run", data("press.xml"), "--seed", "3", "--duration", "0.01"}, {.working_folder = folder.path()});
+  Settings there;
+  there.working_folder = folder.path();
+  const Outcome outcome = tactus({"run", data("press.xml"), "--seed", "3", "--duration", "0.01"}, there);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_TRUE(fs::exists(folder.file("runs/press-null-space-seed3/run.json")));
 }

@@ -85,7 +85,8 @@ TEST(SolveAll, CountsWhatWasNotSolved) {
     int calls_ = 0;
   };
   SecondFails back_end;
-  const Answers answers = solveAll(back_end, std::vector<control::TickProblem>(3, problem(control::Relation::equality)));
+  const Answers answers =
+      solveAll(back_end, std::vector<control::TickProblem>(3, problem(control::Relation::equality)));
   EXPECT_EQ(answers.unsolved, 1);
   EXPECT_EQ(answers.torques[1].size(), 0);
   EXPECT_EQ(answers.torques[2], Vector2d(3, 0));

@@ -57,7 +57,8 @@ TEST(SolveCommand, InfeasibleIsJsonAllTheSame) {
 TEST(SolveCommand, OptionOfAnotherBackEnd) {
   const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "null-space", "--solver", "ipopt"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("back end 'null-space' has no option 'solver'; its options: projection, inequalities"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("back end 'null-space' has no option 'solver'; its options: projection, inequalities"));
 }
 
 TEST(SolveCommand, MisspelledOption) {

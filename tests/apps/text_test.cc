@@ -28,7 +28,8 @@ TEST(Text, RoundedToSignificantDigits) {
 }
 
 TEST(Text, TablesAreAligned) {
-  EXPECT_EQ(textTable({{"metric", "value"}, {"a", "12.5"}, {"µ", "–"}}), "metric  value\na        12.5\nµ           –\n");
+  EXPECT_EQ(textTable({{"metric", "value"}, {"a", "12.5"}, {"µ", "–"}}),
+            "metric  value\na        12.5\nµ           –\n");
 }
 
 TEST(Text, SplitAndJoin) {

@@ -19,9 +19,18 @@ TEST(Usage, VersionIsData) {
 }
 
 TEST(Usage, EveryCommandHasHelpWithExamples) {
-  const std::vector<std::vector<std::string>> commands{{},         {"run"},      {"check"},           {"compare"},
-                                                       {"solve"},  {"dynamics"}, {"golden"},          {"golden", "record"},
-                                                       {"plugins"}, {"report"},  {"golden", "verify"}, {"plugins", "list"}};
+  const std::vector<std::vector<std::string>> commands{{},
+                                                       {"run"},
+                                                       {"check"},
+                                                       {"compare"},
+                                                       {"solve"},
+                                                       {"dynamics"},
+                                                       {"golden"},
+                                                       {"golden", "record"},
+                                                       {"plugins"},
+                                                       {"report"},
+                                                       {"golden", "verify"},
+                                                       {"plugins", "list"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = tactus(command);
@@ -71,7 +80,8 @@ TEST(Usage, MissingArgument) {
 
 TEST(Usage, NumbersThatAreNone) {
   EXPECT_THAT(tactus({"run", "x.xml", "--duration", "-1"}).err, HasSubstr("'-1' is not a number greater than 0"));
-  EXPECT_THAT(tactus({"run", "x.xml", "--duration", "1.5abc"}).err, HasSubstr("'1.5abc' is not a number greater than 0"));
+  EXPECT_THAT(tactus({"run", "x.xml", "--duration", "1.5abc"}).err,
+              HasSubstr("'1.5abc' is not a number greater than 0"));
   EXPECT_EQ(tactus({"run", "x.xml", "--seed", "x"}).exit_code, 2);
 }
 

@@ -21,9 +21,11 @@ Json small() {
     "torque_limits": {"lower": [-1, null], "upper": [1, 3], "priority": 1},
     "levels": [
       {"priority": 4, "weight": 0.5, "tasks": [
-        {"name": "reach", "relation": "equality", "jacobian": [[1, 0], [0, 1]], "force": [1, 2], "acceleration": [3, 4]}]},
+        {"name": "reach", "relation": "equality", "jacobian": [[1, 0], [0, 1]], "force": [1, 2],
+         "acceleration": [3, 4]}]},
       {"priority": 1, "tasks": [
-        {"name": "touch", "relation": "inequality", "jacobian": [[1, 1]], "force": [0.5], "contact": true, "force_max": 2},
+        {"name": "touch", "relation": "inequality", "jacobian": [[1, 1]], "force": [0.5],
+         "contact": true, "force_max": 2},
         {"name": "grip", "relation": "equality", "jacobian": [[1, 1], [1, 0], [0, 1]], "force": [1, 0, 0],
          "contact": true, "friction": 0.4}]}]})");
 }

@@ -26,7 +26,8 @@ enum class Solver { ipopt, nlopt };
 constexpr Solver solvers[] = {Solver::ipopt, Solver::nlopt};
 
 TickSolution solve(const TickProblem& problem, const WeightedQpOptions& options, Solver solver, bool polish = true) {
-  QpBackEnd back_end(options, solver == Solver::ipopt ? makeIpoptSolver(polish ? 1e-6 : 1e-13) : makeNloptSolver(), polish);
+  QpBackEnd back_end(options, solver == Solver::nlopt ? makeNloptSolver() : makeIpoptSolver(polish ? 1e-6 : 1e-13),
+                     polish);
   TickSolution solution;
   back_end.prepare(problem, solution);
   back_end.solve(problem, solution);
@@ -57,8 +58,9 @@ TEST(WeightedQp, Law3TheExactCascadeIsTheTorqueProgrammeInTheInertiaMetric) {
       TickSolution expected;
       cascade.prepare(problem, expected);
       cascade.solve(problem, expected);
-      const WeightedQpOptions options{
-          .objective = Objective::torque, .metric = Metric::inertia, .force_weight = std::pow(10, source.uniform(-2, 1))};
+      const WeightedQpOptions options{.objective = Objective::torque,
+                                      .metric = Metric::inertia,
+                                      .force_weight = std::pow(10, source.uniform(-2, 1))};
       const TickSolution solution = solve(problem, options, solver);
       EXPECT_EQ(solution.status, Status::ok) << solution.message;
       met.add(solution);

@@ -41,7 +41,8 @@ TEST(HighestPoint, OfLyingShapesIsTheMiddleOfTheirEdges) {
 
 TEST(HighestPoint, OfATiltedBoxIsItsEdge) {
   const Eigen::Matrix3d tilt = AngleAxisd(M_PI / 4, Vector3d::UnitY()).toRotationMatrix();
-  expectNear(highestPoint(objectOf(description::BoxPrimitive{{0.2, 0.4, 0.2}}, {0, 0, 0}, tilt)), {0, 0, 0.1 * M_SQRT2});
+  expectNear(highestPoint(objectOf(description::BoxPrimitive{{0.2, 0.4, 0.2}}, {0, 0, 0}, tilt)),
+             {0, 0, 0.1 * M_SQRT2});
 }
 
 TEST(HighestPoint, OfAUnionIsThatOfItsHighestPart) {

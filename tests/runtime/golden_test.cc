@@ -28,7 +28,8 @@ GoldenComparison compare(const std::string& expected, const std::string& actual,
   return compareGolden(table(expected), table(actual), tolerances);
 }
 
-constexpr const char* log = "time,level/1/rank,task/sweep/error,task/hold/error\n0,3,0.5,1\n0.01,3,0.25,2\n0.02,2,0.125,3\n";
+constexpr const char* log =
+    "time,level/1/rank,task/sweep/error,task/hold/error\n0,3,0.5,1\n0.01,3,0.25,2\n0.02,2,0.125,3\n";
 
 TEST(Golden, SameLogPasses) {
   const GoldenComparison comparison = compare(log, log);
@@ -51,9 +52,11 @@ TEST(Golden, NamesColumnTimeAndTaskThatDivergedFirst) {
   EXPECT_EQ(comparison.failures[0].column, "task/hold/error");
   EXPECT_EQ(comparison.failures[0].time, 0.01);
   EXPECT_NEAR(comparison.failures[0].worst_ratio, 10, 1e-12);  // 1 over 0.1, at 0.02 s
-  EXPECT_THAT(comparison.text(), StartsWith("first divergence: task/hold/error (task 'hold') at time 0.01 s: expected 2, "
-                                            "got 2.5\n"));
-  EXPECT_THAT(comparison.text(), HasSubstr("  task/sweep/error: worst error is 3.75 × its tolerance, first at time 0.02 s"));
+  EXPECT_THAT(comparison.text(),
+              StartsWith("first divergence: task/hold/error (task 'hold') at time 0.01 s: expected 2, "
+                         "got 2.5\n"));
+  EXPECT_THAT(comparison.text(),
+              HasSubstr("  task/sweep/error: worst error is 3.75 × its tolerance, first at time 0.02 s"));
 }
 
 TEST(Golden, FirstTaskIsNamedWhenAnotherColumnDivergedBefore) {
@@ -117,7 +120,8 @@ bool matchesSlowly(std::string_view pattern, std::string_view text) {
   if (pattern[0] == '*') {
     return matchesSlowly(pattern.substr(1), text) || (!text.empty() && matchesSlowly(pattern, text.substr(1)));
   }
-  return !text.empty() && (pattern[0] == '?' || pattern[0] == text[0]) && matchesSlowly(pattern.substr(1), text.substr(1));
+  return !text.empty() && (pattern[0] == '?' || pattern[0] == text[0]) &&
+         matchesSlowly(pattern.substr(1), text.substr(1));
 }
 
 TEST(Glob, AgreesWithItsDefinitionOnRandomWords) {

@@ -119,8 +119,9 @@ TEST_F(PluginLoaderTest, NoRegisterFunction) {
 }
 
 TEST_F(PluginLoaderTest, ThrowingRegistrationLeavesNothing) {
-  EXPECT_THAT(refusalOf(library("standard_throw")),
-              HasSubstr("registration of plugin 'good' failed, nothing of it is kept: the licence server is on holiday"));
+  EXPECT_THAT(
+      refusalOf(library("standard_throw")),
+      HasSubstr("registration of plugin 'good' failed, nothing of it is kept: the licence server is on holiday"));
   EXPECT_THAT(refusalOf(library("other_throw")), HasSubstr("it threw something that is not a std::exception"));
 }
 
@@ -157,9 +158,10 @@ TEST_F(PluginLoaderTest, UnknownNameListsEveryPathTried) {
     two.loadNamed("acme");
     FAIL() << "found a plugin that does not exist";
   } catch (const PluginError& error) {
-    EXPECT_STREQ(error.what(),
-                 "plugin 'acme' was not found; tried:\n  /first/acme.so: no such file\n  /second/acme.so: no such file\n"
-                 "name its library with --plugin FILE, or its folder in TACTUS_PLUGIN_PATH");
+    EXPECT_STREQ(
+        error.what(),
+        "plugin 'acme' was not found; tried:\n  /first/acme.so: no such file\n  /second/acme.so: no such file\n"
+        "name its library with --plugin FILE, or its folder in TACTUS_PLUGIN_PATH");
   }
 }
 

@@ -43,11 +43,12 @@ RecorderOptions into(const TemporaryFolder& folder, ColumnSet columns = ColumnSe
 TEST(Recorder, DefaultColumns) {
   const TemporaryFolder folder;
   record(into(folder), 0.01);
-  EXPECT_THAT(CsvTable::read(folder.file("log.csv")).columns(),
-              ElementsAre("time", "level/1/rank", "level/1/nullity", "level/1/active", "level/1/residual",
-                          "task/lift/error", "task/lift/speed", "signal/clock/count", "contact/contacts", "contact/links",
-                          "contact/mean_N", "contact/max_N", "contact/undesired_max_N", "controller/torque_norm",
-                          "controller/scale", "controller/status", "controller/fallback", "controller/limited"));
+  EXPECT_THAT(
+      CsvTable::read(folder.file("log.csv")).columns(),
+      ElementsAre("time", "level/1/rank", "level/1/nullity", "level/1/active", "level/1/residual", "task/lift/error",
+                  "task/lift/speed", "signal/clock/count", "contact/contacts", "contact/links", "contact/mean_N",
+                  "contact/max_N", "contact/undesired_max_N", "controller/torque_norm", "controller/scale",
+                  "controller/status", "controller/fallback", "controller/limited"));
 }
 
 TEST(Recorder, AllColumnsAddTheJoints) {
@@ -64,7 +65,8 @@ TEST(Recorder, RowsComeAtTheRowRate) {
   record(into(folder, ColumnSet::standard, 200), 0.1);
   const CsvTable log = CsvTable::read(folder.file("log.csv"));
   ASSERT_EQ(log.rows(), 20u);
-  const std::vector<double> time = log.numbers(log.column("time")), count = log.numbers(log.column("signal/clock/count"));
+  const std::vector<double> time = log.numbers(log.column("time")),
+                            count = log.numbers(log.column("signal/clock/count"));
   for (size_t row = 0; row < log.rows(); ++row) {
     EXPECT_NEAR(time[row], 0.005 * static_cast<double>(row), 1e-12);
     EXPECT_EQ(count[row], 5.0 * static_cast<double>(row) + 1);
