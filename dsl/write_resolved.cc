@@ -84,7 +84,8 @@ std::string levelText(const LevelDescription& level) {
 std::string modelText(const Stack& stack) {
   for (const std::string& file : {stack.robot_model, stack.robot_model + ".urdf"})
     for (const auto& [reader, text] : stack.files)
-      if (pathBeside(reader, file) == stack.robot_file) return std::filesystem::absolute(stack.robot_file).string();
+      if (reader != stack.robot_file && pathBeside(reader, file) == stack.robot_file)
+        return std::filesystem::absolute(stack.robot_file).string();
   return stack.robot_model;
 }
 

@@ -1,4 +1,4 @@
 #include "framework/runtime/plugin_api.h"
 #include "plugins/bump-estimate/bump_estimate.h"
 
-TACTUS_PLUGIN("bump-estimate", TACTUS_VERSION, "", tactus::plugins::BumpEstimate::registerIn)
+TACTUS_PLUGIN("bump-estimate", TACTUS_VERSION, "unspecified", tactus::plugins::BumpEstimate::registerIn)

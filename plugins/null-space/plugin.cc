@@ -4,32 +4,8 @@
 namespace tactus::null_space {
 namespace {
 
-using control::AttributeRow;
 using control::ElementValues;
 using control::ValueType;
-
-AttributeRow choice(std::string name, std::string fallback, std::vector<std::string> choices, std::string text) {
-  AttributeRow row;
-  row.name = std::move(name);
-  row.type = ValueType::choice;
-  row.default_text = std::move(fallback);
-  row.choices = std::move(choices);
-  row.description = std::move(text);
-  return row;
-}
-
-AttributeRow sigma(std::string name, std::string fallback, std::string text) {
-  AttributeRow row;
-  row.name = std::move(name);
-  row.type = ValueType::real;
-  row.unit = std::string("1");
-  row.default_text = std::move(fallback);
-  row.lower = 0;
-  row.lower_open = true;
-  row.upper = 1;
-  row.description = std::move(text);
-  return row;
-}
 
 std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
   NullSpaceOptions options;
@@ -50,17 +26,25 @@ void registerElements(control::Registry& registry) {
       "by scaling the whole torque.";
   row.source = "4.2.5-4.2.12, Algorithms 3 and 4";
   row.attributes = {
-      choice("projection", "augmented", {"successive", "augmented"},
-             "augmented: each level's torque is projected alone onto the rows of all levels above, strict for all "
-             "levels. successive: Algorithm 4, from the lowest level up, strict for level 1 only."),
-      choice("inequalities", "exact", {"one-pass", "exact"},
-             "exact: the nearest torque in the inverse-inertia metric that keeps every row. one-pass: Algorithm 3, "
-             "which can leave rows violated that the unprojected torque kept."),
-      sigma("rank-tolerance", "1e-8",
-            "Singular value, of unit rows in the inverse-inertia metric projected into what higher levels left, up to "
-            "which a direction is not held."),
-      sigma("fade", "1e-6",
-            "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance."),
+      {.name = "projection", .type = ValueType::choice, .default_text = "augmented",
+       .description =
+           "augmented: each level's torque is projected alone onto the rows of all levels above, strict for all levels. "
+           "successive: Algorithm 4, from the lowest level up, strict for level 1 only.",
+       .choices = {"successive", "augmented"}},
+      {.name = "inequalities", .type = ValueType::choice, .default_text = "exact",
+       .description =
+           "exact: the nearest torque in the inverse-inertia metric that keeps every row. one-pass: Algorithm 3, which "
+           "can leave rows violated that the unprojected torque kept.",
+       .choices = {"one-pass", "exact"}},
+      {.name = "rank-tolerance", .type = ValueType::real, .unit = "1", .default_text = "1e-8",
+       .description =
+           "Singular value, of unit rows in the inverse-inertia metric projected into what higher levels left, up to "
+           "which a direction is not held.",
+       .lower = 0, .upper = 1, .lower_open = true},
+      {.name = "fade", .type = ValueType::real, .unit = "1", .default_text = "1e-6",
+       .description =
+           "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance.",
+       .lower = 0, .upper = 1, .lower_open = true},
   };
   registry.addBackEnd(std::move(row), make);
 }
@@ -68,4 +52,4 @@ void registerElements(control::Registry& registry) {
 }  // namespace
 }  // namespace tactus::null_space
 
-TACTUS_PLUGIN("null-space", TACTUS_VERSION, "BSD-3-Clause", tactus::null_space::registerElements)
+TACTUS_PLUGIN("null-space", TACTUS_VERSION, "unspecified", tactus::null_space::registerElements)

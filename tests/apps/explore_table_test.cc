@@ -58,6 +58,8 @@ TEST(ExploreTable, MeetsItsFiguresOnOneSeed) {
   EXPECT_GE(metrics["keys_passed"], 7);
   EXPECT_LE(metrics["bump_position_error_m"], 0.005);
   EXPECT_LE(metrics["bump_height_error_m"], 0.002);
+  EXPECT_THAT(contentOf(folder.file("run/stack.resolved.xml")), ::testing::HasSubstr(R"(<robot model="lwr_allegro">)"))
+      << "a shipped robot is named, not given as a path of this machine";
 }
 
 TEST(ExploreTable, MovingTheBumpInThePlantAloneMovesTheEstimate) {
