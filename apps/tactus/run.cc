@@ -74,7 +74,7 @@ void addRun(CLI::App& program, Context& context) {
 Examples:
   tactus run examples/explore_table/stack.xml
   tactus run examples/explore_table/stack.xml --backend qp/nlopt --seed 3 --duration 10
-  tactus run examples/explore_table/stack.xml --set press=0.8 --out /tmp/harder)");
+  tactus run examples/explore_table/stack.xml --set press=0.8 --out runs/harder)");
   command->callback([=, &context] { context.action = [=, &context] { return run(*arguments, context.json); }; });
 }
 

@@ -5,25 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
+#include <algorithm>
 #include <random>
 #include <sstream>
 
+#include "tests/dynamics/allocation_count.h"
 #include "tests/tasks/task_world.h"
-
-namespace {
-thread_local bool counting = false;
-thread_local int allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace tactus::test {
 namespace {
@@ -178,12 +165,10 @@ TEST_P(TaskLaws, AnUpdateAllocatesNothing) {
   RandomStates states(3);
   for (int k = 0; k < 50; ++k) {
     states.apply(world);
-    allocations = 0;
-    counting = true;
+    const long before = dynamics::allocationCount();
     world.touch->update(world.tick());
     task->update(world.tick(), rows);
-    counting = false;
-    ASSERT_EQ(allocations, 0);
+    ASSERT_EQ(dynamics::allocationCount() - before, 0);
   }
 }
 
