@@ -35,33 +35,26 @@ ContactForce::ContactForce(const BuildContext& context)
       contacts_(context.port<ContactSet>("on")),
       force_(context.values.real("force")),
       feedback_(context.values.real("feedback")),
-      threshold_(context.values.real("feedback-threshold")),
-      filter_(context.values.real("feedback-filter")),
       min_force_(context.values.real("min-force")),
-      excess_(context.model.frames().size(), 0.0),
-      seen_(context.model.frames().size(), 0) {
+      excess_(context.values.real("feedback-threshold"), context.values.real("feedback-filter"),
+              context.model.frames().size()) {
   if (min_force_ > force_) throw ElementError("min-force", "min-force must not be greater than force");
 }
 
 void ContactForce::doUpdate(const Tick& tick, TickTask& rows) {
-  const double blend = tick.dt / (filter_ + tick.dt);
-  std::fill(seen_.begin(), seen_.end(), 0);
+  excess_.beginTick();
   rows.rows = static_cast<int>(contacts_.contacts.size());
   lowest_reference_ = force_;
   error_ = 0;
   for (int i = 0; i < rows.rows; ++i) {
     const Contact& contact = contacts_.contacts[i];
-    seen_[contact.frame] = 1;
-    double& excess = excess_[contact.frame];
-    excess += blend * (std::max(contact.force_N - threshold_, 0.0) - excess);
+    const double excess = excess_.measure(contact.frame, contact.force_N, tick.dt);
     tick.robot.directionJacobian(contact.frame, contact.point_W, contact.normal_W, rows.jacobian.row(i));
     rows.force[i] = std::max(force_ - feedback_ * excess, min_force_);
     lowest_reference_ = std::min(lowest_reference_, rows.force[i]);
     error_ = std::max(error_, std::abs(contact.force_N - force_));
   }
-  for (std::size_t frame = 0; frame < excess_.size(); ++frame) {
-    if (!seen_[frame]) excess_[frame] = 0;
-  }
+  excess_.endTick();
 }
 
 void ContactForce::columns(std::vector<LogColumn>& columns) const {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "framework/control/registry.h"
+#include "tasks/force_excess.h"
 
 namespace tactus::tasks {
 
@@ -23,9 +24,8 @@ class ContactForce final : public control::Task {
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
 
   const control::ContactSet& contacts_;
-  double force_, feedback_, threshold_, filter_, min_force_;
-  std::vector<double> excess_;                                     ///< filtered (f − f_t)₊ by frame, N
-  std::vector<char> seen_;                                         ///< by frame: in contact this tick
+  double force_, feedback_, min_force_;
+  ForceExcess excess_;                                             ///< over f_t
   double lowest_reference_ = 0;
 };
 

@@ -30,30 +30,23 @@ void ContactLimit::registerIn(Registry& registry) {
 ContactLimit::ContactLimit(const BuildContext& context)
     : Task(Relation::inequality, context.port<ContactSet>("on").capacity),
       contacts_(context.port<ContactSet>("on")),
-      max_force_(context.values.has("max-force") ? context.values.real("max-force") : description::infinity),
       feedback_(context.values.real("feedback")),
-      filter_(context.values.real("feedback-filter")),
       back_off_limit_(context.values.real("back-off-limit")),
-      excess_(context.model.frames().size(), 0.0),
-      seen_(context.model.frames().size(), 0) {}
+      excess_(context.values.has("max-force") ? context.values.real("max-force") : description::infinity,
+              context.values.real("feedback-filter"), context.model.frames().size()) {}
 
 void ContactLimit::doUpdate(const Tick& tick, TickTask& rows) {
-  const double blend = tick.dt / (filter_ + tick.dt);
-  std::fill(seen_.begin(), seen_.end(), 0);
+  excess_.beginTick();
   rows.rows = static_cast<int>(contacts_.contacts.size());
   error_ = 0;
   for (int i = 0; i < rows.rows; ++i) {
     const Contact& contact = contacts_.contacts[i];
-    seen_[contact.frame] = 1;
-    double& excess = excess_[contact.frame];
-    excess += blend * (std::max(contact.force_N - max_force_, 0.0) - excess);
+    const double excess = excess_.measure(contact.frame, contact.force_N, tick.dt);
     tick.robot.directionJacobian(contact.frame, contact.point_W, contact.normal_W, rows.jacobian.row(i));
     rows.force[i] = -std::min(feedback_ * excess, back_off_limit_);
     error_ = std::max(error_, contact.force_N);
   }
-  for (std::size_t frame = 0; frame < excess_.size(); ++frame) {
-    if (!seen_[frame]) excess_[frame] = 0;
-  }
+  excess_.endTick();
 }
 
 }  // namespace tactus::tasks

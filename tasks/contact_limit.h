@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include "framework/control/registry.h"
+#include "tasks/force_excess.h"
 
 namespace tactus::tasks {
 
@@ -20,9 +19,8 @@ class ContactLimit final : public control::Task {
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
 
   const control::ContactSet& contacts_;
-  double max_force_, feedback_, filter_, back_off_limit_;
-  std::vector<double> excess_;                                     ///< filtered (f − f_max)₊ by frame, N
-  std::vector<char> seen_;
+  double feedback_, back_off_limit_;
+  ForceExcess excess_;                                             ///< over f_max
 };
 
 }  // namespace tactus::tasks
