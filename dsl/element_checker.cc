@@ -139,8 +139,8 @@ std::vector<std::string> ElementChecker::allowedChildren(const ElementRow& row) 
   return names;
 }
 
-const ElementRow* ElementChecker::backEndOf(const XmlElement& controller) const {
-  const XmlAttribute* name = controller.attribute("backend");
+const ElementRow* ElementChecker::backEndOf(const XmlElement& element) const {
+  const XmlAttribute* name = element.attribute("backend");
   return name ? table_.findBackEnd(name->value) : nullptr;
 }
 
@@ -223,13 +223,13 @@ void ElementChecker::sayMisplaced(const XmlElement& child, const XmlElement& par
 
 bool ElementChecker::checkGivenAttributes(const XmlElement& element, const ElementRow& row, ElementValues& values) {
   bool right = true;
-  const ElementRow* back_end = row.name == "controller" ? backEndOf(element) : nullptr;
+  const ElementRow* back_end = row.takes_back_end_options ? backEndOf(element) : nullptr;
   for (const XmlAttribute& attribute : element.attributes) {
     const AttributeRow* known = row.attribute(attribute.name);
     if (!known && back_end) known = back_end->attribute(attribute.name);
     if (!known) {
       right = false;
-      if (row.name == "controller" && !back_end) continue;  // which options there are depends on the back end
+      if (row.takes_back_end_options && !back_end) continue;  // which options there are depends on the back end
       const std::string whose = back_end ? "back end '" + back_end->name + "'" : tag(element.name);
       findings_.errorAtName(code::unknown_attribute, element, attribute,
                             whose + " has no " + (back_end ? "option '" : "attribute '") + attribute.name + "'",

@@ -50,7 +50,7 @@ class ElementChecker {
   void checkText(const XmlElement& element);
   bool allows(const control::ChildRow& child, const control::ElementRow& row) const;
   std::vector<std::string> allowedChildren(const control::ElementRow& row) const;
-  const control::ElementRow* backEndOf(const XmlElement& controller) const;
+  const control::ElementRow* backEndOf(const XmlElement& element) const;
 
   const control::ElementTable& table_;
   Findings& findings_;

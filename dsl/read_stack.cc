@@ -209,37 +209,68 @@ class StackReader {
     for (const auto& [name, value] : element.values.all())
       if (element.row->attribute(name)) stack_.controller.values.set(name, value);
     if (!element.values.has("backend")) return;
-    const std::string written = element.values.text("backend");
-    const auto names = registry_.names(ElementKind::back_end);
-    if (!registry_.elements().findBackEnd(written)) {
-      std::string listed;
-      for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
-      findings_.errorAtValue(code::unknown_back_end, *element.xml, *element.xml->attribute("backend"),
-                             "there is no back end '" + written + "': there " +
-                                 (listed.empty() ? "are none" : "are " + listed),
-                             nearestName(written, names));
-      return;
+    std::vector<ElementValues> written = givenOptions(element);
+    if (written.empty()) return;
+    const auto called = [&](const ElementValues& options) { return options.row().name == options_.backend; };
+    auto chosen = written.begin();
+    if (!options_.backend.empty()) chosen = std::find_if(written.begin(), written.end(), called);
+    if (chosen == written.end()) {
+      const ElementRow* row = registry_.elements().findBackEnd(options_.backend);
+      if (!row) {
+        findings_.error(code::unknown_back_end, *element.xml,
+                        "--backend " + options_.backend + ": there is no such back end",
+                        nearestName(options_.backend, registry_.names(ElementKind::back_end)));
+        return;
+      }
+      chosen = written.emplace(written.end(), *row);
     }
-    const bool replaced = !options_.backend.empty() && options_.backend != written;
-    const std::string name = replaced ? options_.backend : written;
-    const ElementRow* row = registry_.elements().findBackEnd(name);
-    if (!row) {
-      findings_.error(code::unknown_back_end, *element.xml, "--backend " + name + ": there is no such back end",
-                      nearestName(name, names));
-      return;
-    }
-    if (replaced) {
+    if (chosen != written.begin()) {
       control::Value value = element.values.value("backend");
-      value.text = name;
+      value.text = chosen->row().name;
       value.origin.kind = Origin::Kind::command_line;
-      value.origin.detail = "--backend " + name;
+      value.origin.detail = "--backend " + value.text;
       stack_.controller.values.set("backend", std::move(value));
     }
-    stack_.back_end = ElementValues(*row);
-    for (const auto& [option, value] : element.values.all())
-      if (!replaced && row->attribute(option)) stack_.back_end.set(option, value);
-    setOptions(element, *row);
-    fillOptions(element, *row);
+    stack_.back_end = std::move(*chosen);
+    written.erase(chosen);
+    stack_.alternatives = std::move(written);
+    setOptions(element, stack_.back_end.row());
+    fillOptions(element, stack_.back_end.row());
+  }
+
+  /// What the controller, first, and its alternatives give their back ends; those that name none are left out.
+  std::vector<ElementValues> givenOptions(const CheckedElement& controller) {
+    std::vector<const CheckedElement*> elements{&controller};
+    for (const CheckedElement* alternative : controller.all("alternative")) elements.push_back(alternative);
+    std::vector<ElementValues> given;
+    for (const CheckedElement* element : elements) {
+      if (!element->values.has("backend")) continue;
+      const std::string name = element->values.text("backend");
+      const ElementRow* row = registry_.elements().findBackEnd(name);
+      if (!row) {
+        sayUnknownBackEnd(*element->xml, name);
+        if (element == &controller) return {};
+        continue;
+      }
+      for (const ElementValues& other : given)
+        if (other.row().name == name)
+          findings_.errorAtValue(code::duplicate_name, *element->xml, *element->xml->attribute("backend"),
+                                 "back end '" + name + "' has its options already");
+      ElementValues options(*row);
+      for (const auto& [option, value] : element->values.all())
+        if (row->attribute(option)) options.set(option, value);
+      given.push_back(std::move(options));
+    }
+    return given;
+  }
+
+  void sayUnknownBackEnd(const XmlElement& element, const std::string& name) {
+    const auto names = registry_.names(ElementKind::back_end);
+    std::string listed;
+    for (const std::string& known : names) listed += (listed.empty() ? "" : ", ") + known;
+    findings_.errorAtValue(code::unknown_back_end, element, *element.attribute("backend"),
+                           "there is no back end '" + name + "': there " + (listed.empty() ? "are none" : "are " + listed),
+                           nearestName(name, names));
   }
 
   /// Options from the command line.

@@ -59,6 +59,7 @@ struct Stack {
   std::vector<LevelDescription> levels;
   ElementInstance controller;                                      ///< base attributes: backend, rate
   control::ElementValues back_end;                                 ///< the options of the chosen back end
+  std::vector<control::ElementValues> alternatives;                ///< the options given for other back ends
   RunOptions run;
   std::map<std::string, std::string> files;                    ///< every file read → its content, for hashes and copies
   /// Every file that another one brought in → the places that did, innermost first.

@@ -179,7 +179,19 @@ ElementRow controllerRow() {
           .description = "The back end that solves every tick, with that back end's own options as further attributes.",
           .attributes = {{.name = "backend", .type = ValueType::text, .required = true, .description = "Its name."},
                          {.name = "rate", .type = ValueType::real, .unit = "Hz", .default_text = "1000",
-                          .description = "Ticks per second.", .lower = 0, .lower_open = true}}};
+                          .description = "Ticks per second.", .lower = 0, .lower_open = true}},
+          .children = {{"alternative"}},
+          .takes_back_end_options = true};
+}
+
+ElementRow alternativeRow() {
+  return {.name = "alternative",
+          .kind = ElementKind::structure,
+          .description =
+              "Options of another back end, as further attributes: they hold where --backend or compare puts it in the "
+              "controller's place.",
+          .attributes = {{.name = "backend", .type = ValueType::text, .required = true, .description = "Its name."}},
+          .takes_back_end_options = true};
 }
 
 ElementRow runRow() {
@@ -207,7 +219,8 @@ ElementRow recordRow() {
 
 void addStructureElements(control::Registry& registry) {
   for (ElementRow row : {stackRow(), parameterRow(), includeRow(), defaultsRow(), pluginRow(), robotRow(), startRow(),
-                         sceneRow(), objectRow(), signalsRow(), levelRow(), controllerRow(), runRow(), recordRow()})
+                         sceneRow(), objectRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
+                         recordRow()})
     registry.addStructure(std::move(row));
   registry.addStructure(shapeRow("plane", "The half space below z = 0 of its own frame.", {}));
   registry.addStructure(shapeRow("box", "A box about its own origin.",

@@ -106,7 +106,10 @@ std::string writeResolved(const Stack& stack) {
   }
   for (const LevelDescription& level : stack.levels) out += levelText(level);
   out += "  <controller" + attributesOf(stack.controller.values.row(), stack.controller.values) +
-         attributesOf(stack.back_end.row(), stack.back_end) + "/>\n";
+         attributesOf(stack.back_end.row(), stack.back_end) + (stack.alternatives.empty() ? "/>\n" : ">\n");
+  for (const ElementValues& other : stack.alternatives)
+    out += "    <alternative" + attributeText("backend", other.row().name) + attributesOf(other.row(), other) + "/>\n";
+  if (!stack.alternatives.empty()) out += "  </controller>\n";
   out += "  <run" + attributeText("duration", control::formatNumber(stack.run.duration)) +
          attributeText("seed", std::to_string(stack.run.seed)) + ">\n    <record" +
          attributeText("columns", stack.run.columns) +

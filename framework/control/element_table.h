@@ -69,6 +69,7 @@ struct ElementRow {
   std::vector<AttributeRow> attributes = {};
   std::vector<ChildRow> children = {};
   std::vector<PortRow> ports = {};                                      ///< of signals
+  bool takes_back_end_options = false;                                  ///< those of the one that `backend` names
 
   const AttributeRow* attribute(std::string_view name) const;
 };
@@ -77,7 +78,7 @@ class ElementTable {
  public:
   /// Throws std::invalid_argument when the name is taken or a row contradicts itself (its default is out of range, …).
   void add(ElementRow row);
-  /// Back ends are looked up apart: their rows are the extra attributes of <controller backend="NAME">.
+  /// Back ends are looked up apart: their rows are the extra attributes of elements that take back-end options.
   const ElementRow* find(std::string_view name) const;
   const ElementRow* findBackEnd(std::string_view name) const;
   const std::deque<ElementRow>& rows() const { return rows_; }

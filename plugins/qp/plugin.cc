@@ -33,7 +33,10 @@ void registerElements(control::Registry& registry) {
            "thesis's distance from the summed torque, which cannot rank tasks.",
        .choices = {"torque", "acceleration"}},
       {.name = "metric", .type = ValueType::choice, .default_text = "identity",
-       .description = "Metric of the torque objective: identity as in the thesis, or the inverse inertia.",
+       .description =
+           "What distances are measured by. Torque objective: identity as in the thesis, or the inverse inertia. "
+           "Acceleration objective: identity takes accelerations as they come, m/s² beside rad/s²; inertia takes each "
+           "row times the root of the inertia that it meets, so that an arm's and a finger's errors weigh alike.",
        .choices = {"identity", "inertia"}},
       {.name = "solver", .type = ValueType::choice, .default_text = "ipopt",
        .description = "ipopt: primal-dual interior point. nlopt: sequential least squares (SLSQP).",

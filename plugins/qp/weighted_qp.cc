@@ -133,8 +133,10 @@ void WeightedQp::addAccelerationObjective(const TickProblem& problem, const Whit
     if (bound_only) continue;
     const int row = programme_.objective_rows++;
     const double root = std::sqrt(weights_[at.level]);
-    programme_.F.row(row).head(dof_) = root * whitened.norm(j) * whitened.row(j).transpose();
-    programme_.t[row] = task.has_acceleration ? root * task.acceleration[at.row]
+    const double norm = whitened.norm(j);                          // √(J M⁻¹ Jᵀ); whitened rows have length 1
+    const double scale = options_.metric == Metric::identity ? root : norm > 0 ? root / norm : 0;
+    programme_.F.row(row).head(dof_) = scale * norm * whitened.row(j).transpose();
+    programme_.t[row] = task.has_acceleration ? scale * task.acceleration[at.row]
                                               : programme_.F.row(row).head(dof_).dot(own_.col(at.level));
   }
   const double least = weights_.empty() ? 1 : *std::min_element(weights_.begin(), weights_.end());

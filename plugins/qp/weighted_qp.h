@@ -14,12 +14,12 @@ enum class Objective {
 };
 enum class Metric {
   identity,                                                        ///< the thesis
-  inertia                                                          ///< M⁻¹
+  inertia
 };
 
 struct WeightedQpOptions {
   Objective objective = Objective::acceleration;
-  Metric metric = Metric::identity;                                ///< of the torque objective
+  Metric metric = Metric::identity;
   double weight_ratio = 100;                                       ///< from a level to the next, where none is given
   double force_weight = 1;                                         ///< w_f
   double regularisation = 0.01;                                    ///< w_r over the least level weight
@@ -33,7 +33,11 @@ struct WeightedQpOptions {
 ///   acceleration:  Σ w_i ‖J_i M⁻¹ τ_s − a_i‖² + w_f ‖f − f_ref‖² + w_r τ_sᵀ M⁻¹ τ_s,
 ///
 /// J_i a level's equality rows and its inequality rows with F ≠ 0, a_i = J_i M⁻¹ τ°_i or the acceleration that a task
-/// asks for.  Constraints: J M⁻¹ τ_s = 0 for equality contacts, ≤ 0 for inequality rows; torque limits;
+/// asks for.  In the metric `inertia` the torque objective's distance is that of M⁻¹, and every row j of the
+/// acceleration objective is multiplied by (J_j M⁻¹ J_jᵀ)^-½, the root of the inertia that it meets (Khatib 1987): its
+/// square is then an acceleration's energy, whatever units and whichever limb the row has.
+///
+/// Constraints: J M⁻¹ τ_s = 0 for equality contacts, ≤ 0 for inequality rows; torque limits;
 /// 0 ≤ f ≤ f_max, and for contacts with friction |f_t₁| + |f_t₂| ≤ μ f_n, the pyramid inside the cone.
 /// A contact whose reference is negative counts as an inequality row, with its force in τ°.
 class WeightedQp {

@@ -4,8 +4,7 @@
 
 #include "dsl/compile.h"
 #include "dsl/read_stack.h"
-#include "plugins/bump-estimate/bump_estimate.h"
-#include "plugins/null-space/null_space.h"
+#include "framework/runtime/plugin_loader.h"
 #include "sim/simbody_plant.h"
 #include "tasks/register_tasks.h"
 #include "tests/dynamics/allocation_count.h"
@@ -13,27 +12,11 @@
 namespace tactus::testing {
 namespace {
 
-/// The back end as its plugin makes it, without loading the library.
-void registerNullSpace(control::Registry& registry) {
-  control::ElementRow row;
-  row.name = "null-space";
-  row.kind = control::ElementKind::back_end;
-  row.attributes = {{.name = "projection", .type = control::ValueType::choice, .default_text = "augmented",
-                     .choices = {"successive", "augmented"}}};
-  registry.addBackEnd(row, [](const control::ElementValues& values) {
-    null_space::NullSpaceOptions options;
-    options.cascade = values.text("projection") == "successive" ? null_space::Cascade::successive
-                                                                : null_space::Cascade::augmented;
-    return std::make_unique<null_space::NullSpace>(options);
-  });
-}
-
 TEST(Tick, OfTheMainExampleTakesNoMemory) {
   control::Registry registry;
   dsl::addStructureElements(registry);
   tasks::registerBuiltIns(registry);
-  plugins::BumpEstimate::registerIn(registry);
-  registerNullSpace(registry);
+  runtime::PluginLoader(registry, {}).loadFolder(SHIPPED_PLUGINS);
   dsl::ReadOptions options;
   options.model_path = {TACTUS_SOURCE_DIR "/models"};
   const dsl::Stack stack = dsl::readStack(TACTUS_SOURCE_DIR "/examples/explore_table/stack.xml", registry, options);

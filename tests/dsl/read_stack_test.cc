@@ -43,6 +43,11 @@ TEST(ReadStack, TheMainExampleIsValid) {
        .description = "Stands in for the plugin's.",
        .attributes = {{.name = "from", .type = control::ValueType::port, .port_type = "touched-points"}}},
       [](const control::BuildContext&) { return nullptr; });
+  registry.addBackEnd({.name = "qp",
+                       .kind = control::ElementKind::back_end,
+                       .description = "Stands in for the plugin's.",
+                       .attributes = {{.name = "metric", .type = control::ValueType::text}}},
+                      [](const control::ElementValues&) { return nullptr; });
   std::vector<dsl::Diagnostic> warnings;
   const std::string file = std::string(TACTUS_SOURCE_DIR) + "/examples/explore_table/stack.xml";
   const dsl::Stack stack = dsl::readStack(file, registry, readOptions(), &warnings);
@@ -207,6 +212,38 @@ TEST(ReadStack, TheCommandLineReplacesTheBackEnd) {
   options.backend = "al";
   EXPECT_THAT(errors(smallStack(level, controller), options),
               ElementsAre("4:1 E037 --backend al: there is no such back end [all]"));
+}
+
+TEST(ReadStack, AnAlternativeGivesItsOptionsWhereItIsChosen) {
+  const std::string controller =
+      "<controller backend=\"all\" tolerance=\"0.1\"><alternative backend=\"none\" projection=\"successive\"/></controller>";
+  const dsl::Stack as_written = read(smallStack(level, controller));
+  EXPECT_EQ(as_written.back_end.row().name, "all");
+  EXPECT_EQ(as_written.back_end.text("projection"), "augmented");
+  ASSERT_EQ(as_written.alternatives.size(), 1u);
+  EXPECT_EQ(as_written.alternatives[0].row().name, "none");
+
+  dsl::ReadOptions options = readOptions();
+  options.backend = "none";
+  const dsl::Stack replaced = read(smallStack(level, controller), options);
+  EXPECT_EQ(replaced.back_end.row().name, "none");
+  EXPECT_EQ(replaced.back_end.text("projection"), "successive");
+  EXPECT_EQ(replaced.back_end.real("tolerance"), 1e-8);
+  ASSERT_EQ(replaced.alternatives.size(), 1u);  // the controller as written
+  EXPECT_EQ(replaced.alternatives[0].row().name, "all");
+  EXPECT_EQ(replaced.alternatives[0].real("tolerance"), 0.1);
+}
+
+TEST(ReadStack, WhatIsWrongWithAlternatives) {
+  EXPECT_THAT(errors(smallStack(level, "<controller backend=\"all\"><alternative backend=\"al\"/>\n"
+                                       "<alternative backend=\"none\" projecton=\"successive\"/>\n"
+                                       "<alternative backend=\"none\" rate=\"10\"/>\n"
+                                       "<alternative/></controller>")),
+              ElementsAre("4:49 E037 there is no back end 'al': there are null-space, all, none [all]",
+                          "5:29 E012 back end 'none' has no option 'projecton' [projection]",
+                          "6:23 E020 back end 'none' has its options already",
+                          "6:29 E012 back end 'none' has no option 'rate'",
+                          "7:1 E013 <alternative> needs the attribute 'backend'"));
 }
 
 TEST(ReadStack, PluginsAreLoadedFirst) {

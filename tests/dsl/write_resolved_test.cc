@@ -66,6 +66,8 @@ void expectSame(const dsl::Stack& a, const dsl::Stack& b) {
   }
   expectSameValues(a.controller.values, b.controller.values);
   expectSameValues(a.back_end, b.back_end);
+  ASSERT_EQ(a.alternatives.size(), b.alternatives.size());
+  for (std::size_t i = 0; i < a.alternatives.size(); ++i) expectSameValues(a.alternatives[i], b.alternatives[i]);
   EXPECT_EQ(a.run.duration, b.run.duration);
   EXPECT_EQ(a.run.seed, b.run.seed);
   EXPECT_EQ(a.run.columns, b.run.columns);
@@ -85,7 +87,8 @@ const std::string rich =
     "<level priority=\"1\" strict=\"true\"><test.pull name=\"p\" class=\"soft\" joints=\"a1\n  a2\" "
     "from=\"t.value\"/></level>\n"
     "<include file=\"low.xml\"/>\n"
-    "<controller backend=\"all\" projection=\"successive\"/>\n"
+    "<controller backend=\"all\" projection=\"successive\"><alternative backend=\"none\" tolerance=\"${k}\"/>"
+    "</controller>\n"
     "<run duration=\"12.5\" seed=\"7\"><record columns=\"all\" rate=\"50\"/></run>\n</stack>\n";
 
 TEST(WriteResolved, ReadsBackToTheSameStack) {

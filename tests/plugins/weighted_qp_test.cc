@@ -186,7 +186,8 @@ TEST(WeightedQp, AccelerationObjectiveIsTheStatedSum) {
     shape.max_log10_condition = 2;
     TickProblem problem = source.problem(shape);
     if (source.chance(0.5)) problem.levels[1].weight = 0.3;
-    const WeightedQpOptions options;
+    WeightedQpOptions options;
+    if (problems % 2) options.metric = Metric::inertia;
     const Eigen::LDLT<Eigen::MatrixXd> M(problem.mass_matrix);
     const Eigen::MatrixXd inverse = M.solve(Eigen::MatrixXd::Identity(problem.dof, problem.dof));
     double weight = 1;
@@ -202,8 +203,11 @@ TEST(WeightedQp, AccelerationObjectiveIsTheStatedSum) {
       for (const TickTask& task : problem.levels[i].tasks) {
         const Eigen::MatrixXd A = task.J() * inverse;
         const Eigen::VectorXd a = task.has_acceleration ? Eigen::VectorXd(task.acceleration) : Eigen::VectorXd(A * own);
-        H += weight * A.transpose() * A;
-        g += weight * A.transpose() * a;
+        Eigen::MatrixXd weights = weight * Eigen::MatrixXd::Identity(task.rows, task.rows);
+        if (options.metric == Metric::inertia)
+          weights.diagonal().array() /= (A * task.J().transpose()).diagonal().array();
+        H += A.transpose() * weights * A;
+        g += A.transpose() * weights * a;
       }
     }
     H += options.regularisation * least * inverse;
@@ -211,6 +215,35 @@ TEST(WeightedQp, AccelerationObjectiveIsTheStatedSum) {
     // The gradient vanishes, in units of what its terms are.
     EXPECT_LE((H * solution.torque - g).norm(), 1e-7 * g.norm());
   }
+}
+
+// A task in millimetres is the same task.
+TEST(WeightedQp, TheInertiaMetricDoesNotSeeUnits) {
+  ProblemSource source(18);
+  int seen_by_identity = 0;
+  for (int problems = 0; problems < 100; ++problems) {
+    RandomProblemOptions shape = ordinary();
+    shape.max_log10_condition = 2;
+    const TickProblem problem = source.problem(shape);
+    TickProblem scaled = problem;
+    for (control::TickLevel& level : scaled.levels)
+      for (TickTask& task : level.tasks)
+        for (int r = 0; r < task.rows; ++r) {
+          const double unit = std::pow(10, source.uniform(-1, 1));
+          task.jacobian.row(r) *= unit;
+          task.force[r] /= unit;
+          task.acceleration[r] *= unit;
+        }
+    const auto change = [&](Metric metric) {
+      const WeightedQpOptions options{.metric = metric};
+      const Eigen::VectorXd torque = solve(problem, options, Solver::nlopt).torque;
+      return test::inverseMassNorm(problem, solve(scaled, options, Solver::nlopt).torque - torque) /
+             test::inverseMassNorm(problem, torque);
+    };
+    EXPECT_LE(change(Metric::inertia), 1e-6);
+    seen_by_identity += change(Metric::identity) > 1e-2;
+  }
+  EXPECT_GE(seen_by_identity, 50);
 }
 
 TEST(WeightedQp, WeightsRankTasksInTheAccelerationObjectiveOnly) {
