@@ -30,7 +30,7 @@ struct MergedMass {
 
 /// The thin disk of robot.h: J about the axis, J/2 about every axis across it.
 Eigen::Matrix3d rotorInertia(const Joint& joint) {
-  return 0.5 * joint.rotor_inertia * (Eigen::Matrix3d::Identity() + joint.axis * joint.axis.transpose());
+  return 0.5 * joint.reflectedInertia() * (Eigen::Matrix3d::Identity() + joint.axis * joint.axis.transpose());
 }
 
 /// A rotation that takes Simbody's joint axis (z of a Pin, x of a Slider) to the joint's.
@@ -94,8 +94,14 @@ void SimbodyRobot::build(const Robot& robot, const Eigen::Vector3d& gravity_W) {
     pending.pop_back();
     const Carrier& parent = carriers_[joint.parent];
     const Eigen::Isometry3d X_PJ = parent.pose * joint.origin;
+    if (joint.mimic)
+      throw runtime::PlantError("joint '" + joint.name + "' follows another joint: the plant moves every joint on its own");
     if (joint.type == JointType::fixed) {
       carriers_[joint.child] = {parent.body, X_PJ};
+    } else if (joint.type != JointType::revolute && joint.type != JointType::prismatic) {
+      throw runtime::PlantError("joint '" + joint.name +
+                                "' has several degrees of freedom: the plant has revolute, continuous and prismatic "
+                                "joints only");
     } else {
       const Eigen::Isometry3d X_JB = axisAlignment(joint);
       const MergedMass mass = mergedMass(robot, joint, X_JB.inverse());

@@ -59,9 +59,13 @@ Eigen::VectorXd onePerJoint(const BuildContext& context, const std::string& attr
 bool shareChain(const dynamics::Model& model, int joint, int frame) {
   if (model.supports(joint, frame)) return true;
   // The frame's body is an ancestor of the joint.
-  int body = model.bodies()[joint].parent;
-  while (body >= 0 && body != model.frames()[frame].body) body = model.bodies()[body].parent;
-  return body >= 0;
+  for (int i = 0; i < model.bodyCount(); ++i) {
+    if (model.bodies()[i].coordinate != joint) continue;
+    int body = model.parent(i);
+    while (body >= 0 && body != model.frames()[frame].body) body = model.parent(body);
+    if (body >= 0) return true;
+  }
+  return false;
 }
 
 }  // namespace

@@ -4,6 +4,35 @@
 
 namespace tactus::description {
 
+int positionCount(JointType type) {
+  switch (type) {
+    case JointType::fixed: return 0;
+    case JointType::revolute:
+    case JointType::prismatic: return 1;
+    case JointType::planar: return 3;
+    case JointType::spherical: return 4;
+    case JointType::floating: return 7;
+  }
+  return 0;
+}
+
+int velocityCount(JointType type) {
+  const bool has_quaternion = type == JointType::spherical || type == JointType::floating;
+  return positionCount(type) - (has_quaternion ? 1 : 0);
+}
+
+Eigen::Matrix3d planeFrame(const Eigen::Vector3d& axis) {
+  if (axis == Eigen::Vector3d::UnitZ()) return Eigen::Matrix3d::Identity();  // without rounding
+  int least = 0;
+  axis.cwiseAbs().minCoeff(&least);
+  const Eigen::Vector3d along = Eigen::Vector3d::Unit(least);
+  Eigen::Matrix3d frame;
+  frame.col(0) = (along - axis * axis.dot(along)).normalized();
+  frame.col(1) = axis.cross(frame.col(0));
+  frame.col(2) = axis;
+  return frame;
+}
+
 std::vector<int> Robot::movingJoints() const {
   const int link_count = static_cast<int>(links.size());
   std::vector<std::vector<int>> joints_below(links.size());
@@ -23,7 +52,7 @@ std::vector<int> Robot::movingJoints() const {
   while (!pending.empty()) {
     const int j = pending.back();
     pending.pop_back();
-    if (joints[j].type != JointType::fixed) moving.push_back(j);
+    if (joints[j].type != JointType::fixed && !joints[j].mimic) moving.push_back(j);
     descend(joints[j].child);
   }
   return moving;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,7 +16,27 @@ namespace tactus::description {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-enum class JointType { fixed, revolute, prismatic };
+/// What a joint lets its child do, and its coordinates q with their rates q̇:
+///   revolute, prismatic   an angle about, or a distance along, `axis`;
+///   planar                x, y in the plane across `axis`, then the angle about it: axes of planeFrame(axis);
+///   spherical             a unit quaternion w x y z, child in parent; q̇ is the angular velocity in the child's axes;
+///   floating              x y z of the child's origin in the joint frame, then a quaternion as above; q̇ is the
+///                         velocity of that origin in the joint frame's axes, then the angular velocity as above.
+enum class JointType { fixed, revolute, prismatic, planar, spherical, floating };
+
+/// Numbers in q, and in q̇, of a joint that no other one drives.
+int positionCount(JointType type);
+int velocityCount(JointType type);
+
+/// Columns x, y, z = axis.  x is the coordinate axis least along `axis`, projected; the identity for axis = z.
+Eigen::Matrix3d planeFrame(const Eigen::Vector3d& axis);
+
+/// Couples a joint to another one: q = multiplier · q_driver + offset.  Both have one coordinate.
+struct Mimic {
+  int driver = -1;                                                 ///< index into Robot::joints
+  double multiplier = 1;
+  double offset = 0;
+};
 
 /// All points within `radius` (m) of the segment `from`–`to`, in the link frame.  `from == to` is a sphere.
 struct CapsuleShape {
@@ -55,10 +76,15 @@ struct Joint {
   double velocity = infinity;                                      ///< rad/s or m/s
   double damping = 0;                                              ///< N m s/rad or N s/m
   double friction = 0;                                             ///< N m or N, Coulomb
-  /// Reflected rotor inertia J (kg m²), a thin disk fixed to the child link: J about the joint axis and J/2
-  /// about the two others, added to the child's tensor about its centre of mass.  Both engines do the same.
-  double rotor_inertia = 0;
+  std::optional<Mimic> mimic;                                      ///< driven by another joint
+  double rotor_inertia = 0;                                        ///< kg m², of the motor's rotor, before the gear
+  double gear_ratio = 1;                                           ///< turns of the rotor for one of the joint
   Place place;
+
+  /// What the joint feels of its rotor, J = ratio² · rotor inertia: a thin disk fixed to the child link, J about the
+  /// joint axis and J/2 about the two others, added to the child's tensor about its centre of mass.  Both engines do
+  /// the same.
+  double reflectedInertia() const { return gear_ratio * gear_ratio * rotor_inertia; }
 };
 
 /// A named set of links or of joints, e.g. "fingers".
@@ -68,8 +94,9 @@ struct Group {
   Place place;
 };
 
-/// Links in file order, the root first found by having no parent.  Moving joints are numbered depth-first
-/// from the root, children in the order of their joints in the file: that is the order of q everywhere.
+/// Links in file order, the root first found by having no parent.  Joints with coordinates of their own, neither
+/// fixed nor driven by others, are numbered depth-first from the root, children in the order of their joints in the
+/// file: that is the order of q everywhere.
 struct Robot {
   std::string name;
   std::vector<Link> links;
@@ -80,7 +107,7 @@ struct Robot {
   std::vector<Group> joint_groups;
   Place place;
 
-  /// Indices into `joints` of the moving joints, in the order of q.
+  /// Indices into `joints` of those with coordinates of their own, in the order of q.
   std::vector<int> movingJoints() const;
   /// Index into `links`, or -1.
   int linkIndex(const std::string& name) const;

@@ -10,9 +10,6 @@ void aba(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd
   for (int i = 0; i < model.dof(); ++i) {
     const BodyState& body = workspace.bodies[i];
     ArticulatedState& state = workspace.articulated[i];
-    const int parent = model.parent(i);
-    state.velocity_product =
-        parent < 0 ? MotionVector::Zero() : workspace.bodies[parent].velocity.cross(body.axis * qd[i]);
     state.inertia = body.inertia.matrix();
     state.bias = body.velocity.cross(body.inertia * body.velocity);
   }
@@ -30,17 +27,17 @@ void aba(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd
     ArticulatedState& before = workspace.articulated[parent];
     const Vector6d U_by_D = U / state.axis_inertia;
     before.inertia += state.inertia - U.lazyProduct(U_by_D.transpose());
-    const MotionVector& c = state.velocity_product;
+    const MotionVector& c = workspace.bodies[i].velocity_product;
     const Vector6d force = state.inertia * c.coordinates() + U_by_D * (state.axis_torque - c.dot(state.axis_force));
     before.bias += state.bias + ForceVector(force);
   }
 
-  const MotionVector base(-gravity_W, Eigen::Vector3d::Zero());
+  const MotionVector base = baseAcceleration(gravity_W);
   for (int i = 0; i < model.dof(); ++i) {
     BodyState& body = workspace.bodies[i];
     const ArticulatedState& state = workspace.articulated[i];
     const int parent = model.parent(i);
-    const MotionVector a = (parent < 0 ? base : workspace.bodies[parent].acceleration) + state.velocity_product;
+    const MotionVector a = (parent < 0 ? base : workspace.bodies[parent].acceleration) + body.velocity_product;
     qdd[i] = (state.axis_torque - a.dot(state.axis_force)) / state.axis_inertia;
     body.acceleration = a + body.axis * qdd[i];
   }

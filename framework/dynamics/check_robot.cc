@@ -85,7 +85,8 @@ void checkJoint(const Joint& joint) {
     throw ModelError(subject + ": the orientation of its origin is not a rotation", joint.place);
   }
   if (joint.type == JointType::fixed) return;
-  if (!joint.axis.allFinite() || std::abs(joint.axis.norm() - 1) > unit_tolerance) {
+  const bool has_axis = joint.type != JointType::spherical && joint.type != JointType::floating;
+  if (has_axis && (!joint.axis.allFinite() || std::abs(joint.axis.norm() - 1) > unit_tolerance)) {
     throw ModelError(subject + ": its axis must have length 1, not " + text(joint.axis.norm()), joint.place);
   }
   if (std::isnan(joint.lower) || std::isnan(joint.upper)) {
@@ -107,6 +108,12 @@ void checkJoint(const Joint& joint) {
   notNegative(joint.damping, "damping", false);
   notNegative(joint.friction, "friction", false);
   notNegative(joint.rotor_inertia, "rotor inertia", false);
+  if (!std::isfinite(joint.gear_ratio) || joint.gear_ratio == 0)
+    throw ModelError(subject + ": its gear ratio is " + text(joint.gear_ratio) + "; it must be a number other than 0",
+                     joint.place);
+  if (joint.rotor_inertia > 0 && description::velocityCount(joint.type) > 1)
+    throw ModelError(subject + " has several degrees of freedom: which one its rotor turns with is not said, leave it out",
+                     joint.place);
 }
 
 }  // namespace
@@ -181,6 +188,40 @@ std::vector<int> checkStructure(const Robot& robot) {
                      robot.links[i].place);
   }
   return order;
+}
+
+std::vector<Drive> resolveMimics(const Robot& robot) {
+  const int joint_count = static_cast<int>(robot.joints.size());
+  const auto hasOneCoordinate = [](const Joint& joint) { return description::velocityCount(joint.type) == 1; };
+  std::vector<Drive> drives(robot.joints.size());
+  for (int j = 0; j < joint_count; ++j) {
+    const Joint& driven = robot.joints[j];
+    const std::string subject = "joint " + quoted(driven.name);
+    Drive& drive = drives[j];
+    drive.driver = j;
+    int links = 0;
+    while (robot.joints[drive.driver].mimic) {
+      const description::Mimic& mimic = *robot.joints[drive.driver].mimic;
+      if (mimic.driver < 0 || mimic.driver >= joint_count)
+        throw ModelError(subject + " mimics a joint that the robot does not have: name one of its joints",
+                         driven.place);
+      if (!std::isfinite(mimic.multiplier) || !std::isfinite(mimic.offset))
+        throw ModelError(subject + ": the multiplier and offset of its mimic must be finite numbers", driven.place);
+      if (++links > joint_count)
+        throw ModelError(subject + " mimics itself, directly or through others: one of them must move freely",
+                         driven.place);
+      drive.offset += drive.ratio * mimic.offset;
+      drive.ratio *= mimic.multiplier;
+      drive.driver = mimic.driver;
+    }
+    if (drive.driver == j) continue;
+    const Joint& driver = robot.joints[drive.driver];
+    if (!hasOneCoordinate(driven) || !hasOneCoordinate(driver))
+      throw ModelError(subject + " mimics joint " + quoted(driver.name) +
+                           ": both must be revolute, continuous or prismatic",
+                       driven.place);
+  }
+  return drives;
 }
 
 void checkNumbers(const Robot& robot) {

@@ -12,6 +12,16 @@ namespace tactus::dynamics {
 /// ones in the order of q.
 std::vector<int> checkStructure(const description::Robot& robot);
 
+/// How a joint's position follows from a coordinate: ratio · q + offset.
+struct Drive {
+  int driver = -1;                                                 ///< index into Robot::joints: the joint itself when free
+  double ratio = 1;
+  double offset = 0;
+};
+
+/// Of every joint, chains of mimics followed to their end.  After checkStructure.
+std::vector<Drive> resolveMimics(const description::Robot& robot);
+
 /// Finite masses, inertias, poses; unit axes; limits that leave room; nothing negative that cannot be.
 void checkNumbers(const description::Robot& robot);
 

@@ -14,9 +14,9 @@ DynamicsCache::DynamicsCache(const Model& model, const Eigen::Vector3d& gravity_
       gravity_torque_(model.dof()),
       mass_matrix_(Eigen::MatrixXd::Zero(model.dof(), model.dof())),
       mass_factor_(Eigen::MatrixXd::Zero(model.dof(), model.dof())) {
-  q_.setZero(model.dof());
+  q_.setZero(model.positionCount());
   qd_.setZero(model.dof());
-  update(Eigen::VectorXd::Zero(model.dof()), Eigen::VectorXd::Zero(model.dof()));
+  update(model.neutral(), Eigen::VectorXd::Zero(model.dof()));
 }
 
 void DynamicsCache::update(const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {

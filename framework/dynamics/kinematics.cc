@@ -4,51 +4,96 @@
 
 namespace tactus::dynamics {
 
-using description::JointType;
+namespace {
+
+/// The motion of turning about a line through a point.
+MotionVector turningAbout(const Eigen::Vector3d& axis, const Eigen::Vector3d& point) {
+  return {point.cross(axis), axis};
+}
+
+/// Rotation of a quaternion w x y z of any length; zero turns nothing.
+Eigen::Matrix3d rotationOf(double w, double x, double y, double z) {
+  const double square = w * w + x * x + y * y + z * z;
+  const double s = square > 0 ? 2 / square : 0;
+  Eigen::Matrix3d R;
+  R << 1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y),  //
+      s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x),   //
+      s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y);
+  return R;
+}
+
+}  // namespace
 
 void forwardKinematics(const Model& model, const Eigen::VectorXd& q, Workspace& workspace) {
   const Eigen::Matrix3d R_W = Eigen::Matrix3d::Identity();
   const Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
-  for (int i = 0; i < model.dof(); ++i) {
+  for (int i = 0; i < model.bodyCount(); ++i) {
     const Model::Body& body = model.bodies()[i];
     BodyState& state = workspace.bodies[i];
     const BodyState* parent = body.parent < 0 ? nullptr : &workspace.bodies[body.parent];
     const Eigen::Matrix3d& R_WP = parent ? parent->R_WB : R_W;
     const Eigen::Vector3d& p_WP = parent ? parent->p_WB : p_W;
     const Eigen::Matrix3d R = R_WP * body.origin.linear();         // R_WB at q = 0
-    const Eigen::Vector3d z = R.col(2);
     state.p_WB = p_WP + R_WP * body.origin.translation();
-    if (body.type == JointType::revolute) {
-      const double c = std::cos(q[i]), s = std::sin(q[i]);
-      state.R_WB.col(0) = c * R.col(0) + s * R.col(1);
-      state.R_WB.col(1) = c * R.col(1) - s * R.col(0);
-      state.R_WB.col(2) = z;
-      state.axis = MotionVector(state.p_WB.cross(z), z);
-    } else {
-      state.R_WB = R;
-      state.p_WB += q[i] * z;
-      state.axis = MotionVector(z, Eigen::Vector3d::Zero());
+    switch (body.motion) {
+      case Motion::rotation: {
+        const double angle = body.ratio * q[body.position] + body.offset;
+        const double c = std::cos(angle), s = std::sin(angle);
+        state.R_WB.col(0) = c * R.col(0) + s * R.col(1);
+        state.R_WB.col(1) = c * R.col(1) - s * R.col(0);
+        state.R_WB.col(2) = R.col(2);
+        state.axis = turningAbout(R.col(2), state.p_WB);
+        break;
+      }
+      case Motion::translation:
+        state.R_WB = R;
+        state.p_WB += (body.ratio * q[body.position] + body.offset) * R.col(2);
+        state.axis = MotionVector(R.col(2), Eigen::Vector3d::Zero());
+        break;
+      case Motion::ball_x: {
+        const auto quaternion = q.segment<4>(body.position);
+        state.R_WB.noalias() = R * rotationOf(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
+        state.axis = turningAbout(state.R_WB.col(0), state.p_WB);
+        break;
+      }
+      case Motion::ball_y:
+      case Motion::ball_z:
+        state.R_WB = R;
+        state.axis = turningAbout(R.col(body.motion == Motion::ball_y ? 1 : 2), state.p_WB);
+        break;
     }
+    if (body.ratio != 1) state.axis = state.axis * body.ratio;
   }
 }
 
 void forwardVelocities(const Model& model, const Eigen::VectorXd& qd, Workspace& workspace) {
-  for (int i = 0; i < model.dof(); ++i) {
+  for (int i = 0; i < model.bodyCount(); ++i) {
+    const Model::Body& body = model.bodies()[i];
     BodyState& state = workspace.bodies[i];
-    const MotionVector joint_velocity = state.axis * qd[i];
-    if (const int parent = model.parent(i); parent < 0) {
-      state.velocity = joint_velocity;
-      state.bias_acceleration = MotionVector::Zero();              // a fixed axis: Ṡ = 0
-    } else {
-      const BodyState& before = workspace.bodies[parent];
-      state.velocity = before.velocity + joint_velocity;
-      state.bias_acceleration = before.bias_acceleration + before.velocity.cross(joint_velocity);  // Ṡ = v × S
-    }
+    const MotionVector joint_velocity = state.axis * qd[body.coordinate];
+    // Ṡ = v × S with v of the body that carries the axis; those of the base stand still.
+    state.velocity_product = body.carrier < 0 ? MotionVector::Zero()
+                                              : workspace.bodies[body.carrier].velocity.cross(joint_velocity);
+    state.velocity = joint_velocity;
+    state.bias_acceleration = state.velocity_product;
+    if (body.parent < 0) continue;
+    state.velocity += workspace.bodies[body.parent].velocity;
+    state.bias_acceleration += workspace.bodies[body.parent].bias_acceleration;
+  }
+}
+
+void forwardAccelerations(const Model& model, const Eigen::VectorXd& qdd, const MotionVector& base,
+                          Workspace& workspace) {
+  for (int i = 0; i < model.bodyCount(); ++i) {
+    BodyState& state = workspace.bodies[i];
+    const int parent = model.parent(i);
+    state.acceleration = (parent < 0 ? base : workspace.bodies[parent].acceleration) + state.velocity_product +
+                         state.axis * qdd[model.bodies()[i].coordinate];
   }
 }
 
 void worldInertias(const Model& model, Workspace& workspace) {
-  for (int i = 0; i < model.dof(); ++i) {
+  for (int i = 0; i < model.bodyCount(); ++i) {
     BodyState& state = workspace.bodies[i];
     state.inertia = model.bodies()[i].inertia.transformed(state.R_WB, state.p_WB);
   }
@@ -73,14 +118,9 @@ Eigen::Vector3d framePosition(const Model& model, const Workspace& workspace, in
 
 void pointJacobian(const Model& model, const Workspace& workspace, int frame, const Eigen::Vector3d& point_W,
                    PointJacobianRef J) {
-  int supporting = model.frames()[frame].body;
-  for (int i = model.dof() - 1; i >= 0; --i) {
-    if (i == supporting) {
-      J.col(i) = workspace.bodies[i].axis.at(point_W);
-      supporting = model.parent(i);
-    } else {
-      J.col(i).setZero();
-    }
+  J.setZero();
+  for (int i = model.frames()[frame].body; i >= 0; i = model.parent(i)) {
+    J.col(model.bodies()[i].coordinate) += workspace.bodies[i].axis.at(point_W);
   }
 }
 
@@ -89,7 +129,7 @@ void directionJacobian(const Model& model, const Workspace& workspace, int frame
   const ForceVector unit_force(direction_W, point_W.cross(direction_W));
   row.setZero();
   for (int i = model.frames()[frame].body; i >= 0; i = model.parent(i)) {
-    row[i] = workspace.bodies[i].axis.dot(unit_force);
+    row[model.bodies()[i].coordinate] += workspace.bodies[i].axis.dot(unit_force);
   }
 }
 
@@ -98,8 +138,9 @@ void frameJacobian(const Model& model, const Workspace& workspace, int frame, Fr
   J.setZero();
   for (int i = model.frames()[frame].body; i >= 0; i = model.parent(i)) {
     const MotionVector& axis = workspace.bodies[i].axis;
-    J.col(i).head<3>() = axis.at(p_WF);
-    J.col(i).tail<3>() = axis.angular();
+    auto column = J.col(model.bodies()[i].coordinate);
+    column.head<3>() += axis.at(p_WF);
+    column.tail<3>() += axis.angular();
   }
 }
 

@@ -21,8 +21,9 @@ using RowRef = Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
 struct BodyState {
   Eigen::Matrix3d R_WB;
   Eigen::Vector3d p_WB;
-  MotionVector axis;                                               ///< S, joint axis
+  MotionVector axis;                                               ///< S, times the ratio of a driven body
   MotionVector velocity;                                           ///< v
+  MotionVector velocity_product;                                   ///< c = Ṡ q̇
   MotionVector bias_acceleration;                                  ///< a when q̈ = 0, without gravity: J̇ q̇
   MotionVector acceleration;                                       ///< a, gravity as an acceleration of the base
   ForceVector force;                                               ///< f, through the joint
@@ -34,7 +35,6 @@ struct BodyState {
 struct ArticulatedState {
   Matrix6d inertia;                                                ///< Iᴬ
   ForceVector bias;                                                ///< pᴬ
-  MotionVector velocity_product;                                   ///< c = v × S q̇
   ForceVector axis_force;                                          ///< U = Iᴬ S
   double axis_inertia;                                             ///< D = Sᵀ U
   double axis_torque;                                              ///< u = τ − Sᵀ pᴬ
@@ -43,7 +43,7 @@ struct ArticulatedState {
 /// Memory of the algorithms for one model, taken once.
 struct Workspace {
   explicit Workspace(const Model& model)
-      : bodies(model.dof()), articulated(model.dof()), composite_forces(model.dof()) {}
+      : bodies(model.bodyCount()), articulated(model.bodyCount()), composite_forces(model.bodyCount()) {}
 
   std::vector<BodyState> bodies;
   std::vector<ArticulatedState> articulated;
@@ -52,8 +52,15 @@ struct Workspace {
 
 /// Poses and joint axes: R_WB, p_WB, axis.
 void forwardKinematics(const Model& model, const Eigen::VectorXd& q, Workspace& workspace);
-/// Velocities and J̇ q̇: velocity, bias_acceleration.  After forwardKinematics.
+/// Velocities and J̇ q̇: velocity, velocity_product, bias_acceleration.  After forwardKinematics.
 void forwardVelocities(const Model& model, const Eigen::VectorXd& qd, Workspace& workspace);
+/// Accelerations on a base that accelerates with `base`: acceleration.  After forwardVelocities.
+void forwardAccelerations(const Model& model, const Eigen::VectorXd& qdd, const MotionVector& base,
+                          Workspace& workspace);
+/// Gravity as an acceleration of the base, −g (section 5.3), instead of a force on every body.
+inline MotionVector baseAcceleration(const Eigen::Vector3d& gravity_W) {
+  return {-gravity_W, Eigen::Vector3d::Zero()};
+}
 /// Inertias in the world: inertia.  After forwardKinematics.
 void worldInertias(const Model& model, Workspace& workspace);
 

@@ -19,39 +19,20 @@ ForceVector bodyForce(const Model::Body& body, const BodyState& state) {
   return {force, c_W.cross(force) + state.R_WB * moment_B};
 }
 
-/// Gravity as an acceleration of the base, −g: section 5.3.
-MotionVector baseAcceleration(const Eigen::Vector3d& gravity_W) { return {-gravity_W, Eigen::Vector3d::Zero()}; }
-
 /// τ = Sᵀ f, tip to base, each body handing its force to its parent.
 void projectForces(const Model& model, Workspace& workspace, Eigen::VectorXd& tau) {
-  for (int i = model.dof() - 1; i >= 0; --i) {
+  tau.setZero();
+  for (int i = model.bodyCount() - 1; i >= 0; --i) {
     const BodyState& state = workspace.bodies[i];
-    tau[i] = state.axis.dot(state.force);
+    tau[model.bodies()[i].coordinate] += state.axis.dot(state.force);
     if (const int parent = model.parent(i); parent >= 0) workspace.bodies[parent].force += state.force;
   }
 }
 
-/// `accelerate(i, a)` adds S_i q̈_i.
-template <class Accelerate>
-void recursiveNewtonEuler(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
-                          const Eigen::Vector3d& gravity_W, Accelerate accelerate, Workspace& workspace,
-                          Eigen::VectorXd& tau) {
-  forwardKinematics(model, q, workspace);
-  const MotionVector base = baseAcceleration(gravity_W);
-  for (int i = 0; i < model.dof(); ++i) {
-    BodyState& state = workspace.bodies[i];
-    const MotionVector joint_velocity = state.axis * qd[i];
-    if (const int parent = model.parent(i); parent < 0) {
-      state.velocity = joint_velocity;
-      state.acceleration = base;
-    } else {
-      const BodyState& before = workspace.bodies[parent];
-      state.velocity = before.velocity + joint_velocity;
-      state.acceleration = before.acceleration + before.velocity.cross(joint_velocity);
-    }
-    accelerate(i, state.acceleration);
-    state.force = bodyForce(model.bodies()[i], state);
-  }
+/// f = I a + v ×* I v of every body, then τ.  After forwardVelocities and with accelerations.
+void forcesToTorques(const Model& model, Workspace& workspace, Eigen::VectorXd& tau) {
+  for (int i = 0; i < model.bodyCount(); ++i)
+    workspace.bodies[i].force = bodyForce(model.bodies()[i], workspace.bodies[i]);
   projectForces(model, workspace, tau);
 }
 
@@ -59,13 +40,18 @@ void recursiveNewtonEuler(const Model& model, const Eigen::VectorXd& q, const Ei
 
 void rnea(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& qdd,
           const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& tau) {
-  const auto accelerate = [&](int i, MotionVector& a) { a += workspace.bodies[i].axis * qdd[i]; };
-  recursiveNewtonEuler(model, q, qd, gravity_W, accelerate, workspace, tau);
+  forwardKinematics(model, q, workspace);
+  forwardVelocities(model, qd, workspace);
+  forwardAccelerations(model, qdd, baseAcceleration(gravity_W), workspace);
+  forcesToTorques(model, workspace, tau);
 }
 
 void nonlinearEffects(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
                       const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& bias) {
-  recursiveNewtonEuler(model, q, qd, gravity_W, [](int, MotionVector&) {}, workspace, bias);
+  forwardKinematics(model, q, workspace);
+  forwardVelocities(model, qd, workspace);
+  for (BodyState& state : workspace.bodies) state.acceleration = baseAcceleration(gravity_W) + state.bias_acceleration;
+  forcesToTorques(model, workspace, bias);
 }
 
 void biasSweep(const Model& model, const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& bias) {
@@ -79,10 +65,11 @@ void biasSweep(const Model& model, const Eigen::Vector3d& gravity_W, Workspace& 
 
 void gravitySweep(const Model& model, const Eigen::Vector3d& gravity_W, const Workspace& workspace,
                   Eigen::VectorXd& torque) {
-  for (int i = 0; i < model.dof(); ++i) {
+  torque.setZero();
+  for (int i = 0; i < model.bodyCount(); ++i) {
     const BodyState& state = workspace.bodies[i];
     const Eigen::Vector3d weight = state.composite.mass * gravity_W;
-    torque[i] = -state.axis.dot(ForceVector(weight, state.composite.first_moment.cross(gravity_W)));
+    torque[model.bodies()[i].coordinate] -= state.axis.dot(ForceVector(weight, state.composite.first_moment.cross(gravity_W)));
   }
 }
 

@@ -17,6 +17,7 @@ TEST(Aba, UndoesInverseDynamics) {
   onRandomStates(61, [](RandomState& state, Random&) {
     Eigen::VectorXd tau(state.model.dof()), qdd(state.model.dof());
     rnea(state.model, state.q, state.qd, state.qdd, state.gravity_W, state.workspace, tau);
+    if (state.model.coupled()) return;                             // see forward_dynamics_test.cc
     aba(state.model, state.q, state.qd, tau, state.gravity_W, state.workspace, qdd);
     EXPECT_TRUE(near(qdd, state.qdd, 1e-9));
     Eigen::VectorXd tau_again(state.model.dof());
@@ -31,7 +32,8 @@ void swing(RandomState& state, double h) {
     Eigen::VectorXd q, qd;
   };
   const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
-    Rate r{qd, Eigen::VectorXd(state.model.dof())};
+    Rate r{Eigen::VectorXd(q.size()), Eigen::VectorXd(qd.size())};
+    positionRates(state.model, q, qd, r.q);
     aba(state.model, q, qd, Eigen::VectorXd::Zero(state.model.dof()), state.gravity_W, state.workspace, r.qd);
     return r;
   };
@@ -41,12 +43,13 @@ void swing(RandomState& state, double h) {
   const Rate d = rate(state.q + h * c.q, state.qd + h * c.qd);
   state.q += h / 6 * (a.q + 2 * b.q + 2 * c.q + d.q);
   state.qd += h / 6 * (a.qd + 2 * b.qd + 2 * c.qd + d.qd);
+  normalise(state.model, state.q);
 }
 
 TEST(Aba, AFreeSwingKeepsItsEnergy) {
   Random random(62);
   for (int trial = 0; trial < 10; ++trial) {
-    RandomState state(test_robots::randomTree(random, 1 + trial), random);
+    RandomState state(test_robots::randomTree(random, 1 + trial, trial % 2 == 1), random);
     const auto energies = [&] {
       forwardKinematics(state.model, state.q, state.workspace);
       forwardVelocities(state.model, state.qd, state.workspace);

@@ -23,7 +23,7 @@ inline double kineticEnergy(const description::Robot& robot, const Model& model,
     const Eigen::Isometry3d X_WF = framePose(model, workspace, joint.child);
     const Eigen::Vector3d w_F = X_WF.linear().transpose() * frameVelocity(model, workspace, joint.child).tail<3>();
     const double along = joint.axis.dot(w_F);
-    energy += 0.5 * joint.rotor_inertia * (along * along + 0.5 * (w_F.squaredNorm() - along * along));
+    energy += 0.5 * joint.reflectedInertia() * (along * along + 0.5 * (w_F.squaredNorm() - along * along));
   }
   return energy;
 }

@@ -14,14 +14,36 @@ using test_robots::Random;
 
 constexpr double step = 1e-6;                                      // of central differences: error about 1e-9
 
+/// The joint's own positions, by its name, or what its driver makes of them.
+Eigen::VectorXd positionsOf(const RandomState& state, const description::Joint& joint) {
+  if (joint.mimic) {
+    const Eigen::VectorXd driver = positionsOf(state, state.robot.joints[joint.mimic->driver]);
+    return (driver * joint.mimic->multiplier).array() + joint.mimic->offset;
+  }
+  for (const Model::Joint& one : state.model.joints())
+    if (one.name == joint.name) return state.q.segment(one.position, one.position_count);
+  return {};
+}
+
 /// Pose of a link by the plain product of transforms from the base.
 Eigen::Isometry3d productOfJoints(const RandomState& state, int link) {
   for (const description::Joint& joint : state.robot.joints) {
     if (joint.child != link) continue;
     Eigen::Isometry3d X = productOfJoints(state, joint.parent) * joint.origin;
-    const int i = state.model.jointIndex(joint.name);
-    if (joint.type == JointType::revolute) X.rotate(Eigen::AngleAxisd(state.q[i], joint.axis));
-    if (joint.type == JointType::prismatic) X.translate(state.q[i] * joint.axis);
+    const Eigen::VectorXd q = positionsOf(state, joint);
+    const auto quaternion = [&](int i) { return Eigen::Quaterniond(q[i], q[i + 1], q[i + 2], q[i + 3]); };
+    switch (joint.type) {
+      case JointType::fixed: break;
+      case JointType::revolute: X.rotate(Eigen::AngleAxisd(q[0], joint.axis)); break;
+      case JointType::prismatic: X.translate(q[0] * joint.axis); break;
+      case JointType::planar: {
+        const Eigen::Matrix3d plane = description::planeFrame(joint.axis);
+        X.translate(plane.col(0) * q[0] + plane.col(1) * q[1]).rotate(Eigen::AngleAxisd(q[2], joint.axis));
+        break;
+      }
+      case JointType::spherical: X.rotate(quaternion(0)); break;
+      case JointType::floating: X.translate(q.head<3>()).rotate(quaternion(3)); break;
+    }
     return X;
   }
   return Eigen::Isometry3d::Identity();
@@ -75,9 +97,7 @@ TEST(Kinematics, JacobiansAreDerivativesOfPoses) {
     for (int i = 0; i < state.model.dof(); ++i) {
       Eigen::Isometry3d X[2];
       for (const int side : {0, 1}) {
-        Eigen::VectorXd q = state.q;
-        q[i] += side ? step : -step;
-        forwardKinematics(state.model, q, state.workspace);
+        forwardKinematics(state.model, nudged(state.model, state.q, i, side ? step : -step), state.workspace);
         X[side] = framePose(state.model, state.workspace, place.frame);
       }
       point_rates.col(i) = (X[1] * place.point_F - X[0] * place.point_F) / (2 * step);
@@ -110,7 +130,7 @@ TEST(Kinematics, AccelerationBiasIsTheRateOfTheVelocityAtConstantJointVelocity) 
     Eigen::Vector3d point_velocity[2];
     Vector6d frame_velocity[2];
     for (const int side : {0, 1}) {
-      forwardKinematics(state.model, state.q + (side ? step : -step) * state.qd, state.workspace);
+      forwardKinematics(state.model, moved(state.model, state.q, state.qd, side ? step : -step), state.workspace);
       const Eigen::Vector3d point_W = framePose(state.model, state.workspace, place.frame) * place.point_F;
       point_velocity[side] = pointJacobianOf(state, place.frame, point_W) * state.qd;
       frame_velocity[side] = frameJacobianOf(state, place.frame) * state.qd;

@@ -12,18 +12,28 @@ namespace {
 
 using description::JointType;
 
-TEST(Model, JointsAreThoseOfTheDescriptionInItsOrder) {
+TEST(Model, CoordinatesAreThoseOfTheDescriptionInItsOrder) {
   onRandomStates(21, [](RandomState& state, test_robots::Random&) {
-    const std::vector<int> moving = state.robot.movingJoints();
-    ASSERT_EQ(state.model.dof(), static_cast<int>(moving.size()));
-    for (int i = 0; i < state.model.dof(); ++i) {
-      const description::Joint& joint = state.robot.joints[moving[i]];
-      EXPECT_EQ(state.model.jointNames()[i], joint.name);
-      EXPECT_EQ(state.model.jointIndex(joint.name), i);
-      EXPECT_EQ(state.model.bodies()[i].type, joint.type);
-      EXPECT_EQ(state.model.frames()[joint.child].body, i);
-      EXPECT_LT(state.model.parent(i), i);
+    int position = 0, coordinate = 0;
+    for (const int j : state.robot.movingJoints()) {
+      const description::Joint& joint = state.robot.joints[j];
+      const auto own = std::ranges::find(state.model.joints(), joint.name, &Model::Joint::name);
+      ASSERT_NE(own, state.model.joints().end());
+      EXPECT_EQ(own->type, joint.type);
+      EXPECT_EQ(own->driver, -1);
+      EXPECT_EQ(own->position, position);
+      EXPECT_EQ(own->coordinate, coordinate);
+      EXPECT_EQ(state.model.frames()[joint.child].body, own->first_body + own->body_count - 1);
+      if (own->coordinate_count == 1) {
+        EXPECT_EQ(state.model.jointIndex(joint.name), coordinate);
+      }
+      position += description::positionCount(joint.type);
+      coordinate += description::velocityCount(joint.type);
     }
+    EXPECT_EQ(state.model.positionCount(), position);
+    EXPECT_EQ(state.model.dof(), coordinate);
+    EXPECT_EQ(state.model.jointNames().size(), static_cast<size_t>(coordinate));
+    for (int i = 0; i < state.model.bodyCount(); ++i) EXPECT_LT(state.model.parent(i), i);
     for (size_t i = 0; i < state.robot.links.size(); ++i) {
       EXPECT_EQ(state.model.frames()[i].name, state.robot.links[i].name);
       EXPECT_EQ(state.model.frameIndex(state.robot.links[i].name), static_cast<int>(i));
@@ -31,12 +41,58 @@ TEST(Model, JointsAreThoseOfTheDescriptionInItsOrder) {
   });
 }
 
+TEST(Model, NamesOfCoordinatesSayWhatMoves) {
+  description::Robot robot;
+  for (const char* name : {"base", "sled", "wrist", "body"}) test_robots::addLink(robot, name, 1, {0, 0, 0}, {1, 1, 1});
+  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  test_robots::addJoint(robot, "slide", JointType::planar, 0, 1, here);
+  test_robots::addJoint(robot, "ball", JointType::spherical, 1, 2, here);
+  test_robots::addJoint(robot, "free", JointType::floating, 0, 3, here);
+  const Model model(robot);
+  EXPECT_THAT(model.jointNames(), ::testing::ElementsAre("slide.x", "slide.y", "slide.angle", "ball.wx", "ball.wy",
+                                                         "ball.wz", "free.x", "free.y", "free.z", "free.wx", "free.wy",
+                                                         "free.wz"));
+  EXPECT_THAT(model.positionNames(), ::testing::ElementsAre("slide.x", "slide.y", "slide.angle", "ball.qw", "ball.qx",
+                                                            "ball.qy", "ball.qz", "free.x", "free.y", "free.z",
+                                                            "free.qw", "free.qx", "free.qy", "free.qz"));
+  EXPECT_EQ(model.neutral(), (Eigen::VectorXd(14) << 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0).finished());
+}
+
+TEST(Model, ADriverKeepsTheLimitsOfWhatItDrives) {
+  description::Robot robot = test_robots::lwr();
+  robot.joints[0].lower = -1;
+  robot.joints[0].upper = 1;
+  robot.joints[0].velocity = 2;
+  robot.joints[0].damping = 0.5;
+  robot.joints[0].friction = 0.25;
+  description::Joint& driven = robot.joints[3];
+  driven.mimic = description::Mimic{0, -2, 0.5};
+  driven.lower = -1.5;                                             // -2 q + 0.5 ≥ -1.5: q ≤ 1
+  driven.upper = 1.5;                                              // q ≥ -0.5
+  driven.velocity = 3;
+  driven.damping = 1;
+  driven.friction = 1;
+  const Model model(robot);
+  EXPECT_EQ(model.dof(), 6);
+  EXPECT_EQ(model.bodyCount(), 7);
+  EXPECT_TRUE(model.coupled());
+  EXPECT_EQ(model.lower()[0], -0.5);
+  EXPECT_EQ(model.upper()[0], 1);
+  EXPECT_EQ(model.velocityLimit()[0], 1.5);
+  EXPECT_EQ(model.damping()[0], 4.5);
+  EXPECT_EQ(model.friction()[0], 2.25);
+  EXPECT_EQ(model.joints()[3].driver, 0);
+  EXPECT_EQ(model.jointIndex("a3"), -1);
+  EXPECT_TRUE(model.supports(0, model.frameIndex("4")));
+}
+
 TEST(Model, AJointSupportsWhatItCarries) {
   onRandomStates(22, [](RandomState& state, test_robots::Random&) {
     const Model& model = state.model;
     for (size_t frame = 0; frame < model.frames().size(); ++frame) {
       std::vector<bool> carries(model.dof(), false);
-      for (int body = model.frames()[frame].body; body >= 0; body = model.bodies()[body].parent) carries[body] = true;
+      for (int body = model.frames()[frame].body; body >= 0; body = model.parent(body))
+        carries[model.bodies()[body].coordinate] = true;
       for (int joint = 0; joint < model.dof(); ++joint) {
         EXPECT_EQ(model.supports(joint, static_cast<int>(frame)), carries[joint]);
       }
@@ -107,9 +163,9 @@ TEST(Model, FixedLinksAreMergedAndStayFrames) {
 
 TEST(Model, BodyFramesHaveTheJointAxisAsZ) {
   onRandomStates(23, [](RandomState& state, test_robots::Random&) {
-    const std::vector<int> moving = state.robot.movingJoints();
-    for (int i = 0; i < state.model.dof(); ++i) {
-      const description::Joint& joint = state.robot.joints[moving[i]];
+    for (const description::Joint& joint : state.robot.joints) {
+      if (joint.type == JointType::fixed || joint.type == JointType::spherical || joint.type == JointType::floating)
+        continue;
       const Eigen::Isometry3d& X_BF = state.model.frames()[joint.child].pose;
       EXPECT_TRUE(near(X_BF.linear() * joint.axis, Eigen::Vector3d::UnitZ(), 1e-14));
       EXPECT_EQ(X_BF.translation(), Eigen::Vector3d::Zero());

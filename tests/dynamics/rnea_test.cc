@@ -19,9 +19,7 @@ TEST(Rnea, GravityTorqueIsTheGradientOfThePotentialEnergy) {
     for (int i = 0; i < state.model.dof(); ++i) {
       double energy[2];
       for (const int side : {0, 1}) {
-        Eigen::VectorXd q = state.q;
-        q[i] += side ? step : -step;
-        forwardKinematics(state.model, q, state.workspace);
+        forwardKinematics(state.model, nudged(state.model, state.q, i, side ? step : -step), state.workspace);
         energy[side] = potentialEnergy(state.robot, state.model, state.workspace, state.gravity_W);
       }
       gradient[i] = (energy[1] - energy[0]) / (2 * step);
@@ -39,7 +37,8 @@ TEST(Rnea, PowerOfTheTorqueIsTheRateOfTheEnergy) {
     double energy[2];
     for (const int side : {0, 1}) {
       const double t = side ? step : -step;
-      const Eigen::VectorXd q = state.q + t * state.qd + 0.5 * t * t * state.qdd, qd = state.qd + t * state.qdd;
+      const Eigen::VectorXd q = moved(state.model, state.q, state.qd + 0.5 * t * state.qdd, t);
+      const Eigen::VectorXd qd = state.qd + t * state.qdd;
       forwardKinematics(state.model, q, state.workspace);
       forwardVelocities(state.model, qd, state.workspace);
       energy[side] = kineticEnergy(state.robot, state.model, state.workspace) +

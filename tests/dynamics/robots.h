@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "framework/description/robot.h"
 
@@ -176,20 +177,25 @@ inline void giveRandomInertia(Random& random, Link& link) {
   link.inertia = 0.5 * (link.inertia + link.inertia.transpose()).eval();
 }
 
-/// A tree with `dof` moving joints of random kind, and fixed joints between and after them, some to massless links.
-/// Links hang at any link made before: chains, stars and everything between.
-inline Robot randomTree(Random& random, int dof) {
+inline JointType randomMotion(Random& random, bool every_kind) {
+  const double kind = uniform(random, 0, 1);
+  if (every_kind && kind < 0.1) return JointType::planar;
+  if (every_kind && kind < 0.2) return JointType::spherical;
+  if (every_kind && kind < 0.3) return JointType::floating;
+  return kind < 0.5 ? JointType::prismatic : JointType::revolute;
+}
+
+/// A tree with `moving` moving joints, and fixed joints between and after them, some to massless links.  Links hang at
+/// any link made before: chains, stars and everything between.  Joints are revolute and prismatic, or of every kind.
+inline Robot randomTree(Random& random, int moving, bool every_kind = false) {
   Robot robot;
   robot.name = "random";
   addLink(robot, "base", 0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
   const double chain_share = uniform(random, 0, 1);                // how often a link hangs at the one made last
-  for (int moving = 0; moving < dof;) {
+  for (int made = 0; made < moving;) {
     const int last = static_cast<int>(robot.links.size()) - 1;
     const int parent = uniform(random, 0, 1) < chain_share ? last : static_cast<int>(random() % (last + 1));
-    const double kind = uniform(random, 0, 1);
-    const JointType type = kind < 0.25  ? JointType::fixed
-                           : kind < 0.5 ? JointType::prismatic
-                                        : JointType::revolute;
+    const JointType type = uniform(random, 0, 1) < 0.25 ? JointType::fixed : randomMotion(random, every_kind);
     const std::string name = std::to_string(last + 1);
     const int child = addLink(robot, "link" + name, 0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
     if (type != JointType::fixed || uniform(random, 0, 1) < 0.5) giveRandomInertia(random, robot.links[child]);
@@ -197,12 +203,30 @@ inline Robot randomTree(Random& random, int dof) {
     origin.linear() = rotation(random);
     origin.translation() = uniformVector3(random, 0.4);
     Joint& joint = addJoint(robot, "joint" + name, type, parent, child, origin, direction(random));
-    if (type != JointType::fixed) {
-      if (uniform(random, 0, 1) < 0.5) joint.rotor_inertia = uniform(random, 0, 0.05);
-      ++moving;
-    }
+    if (type == JointType::fixed) continue;
+    ++made;
+    if (description::velocityCount(type) > 1 || uniform(random, 0, 1) < 0.5) continue;
+    joint.rotor_inertia = uniform(random, 0, 0.0005);
+    joint.gear_ratio = uniform(random, 1, 10);
   }
   return robot;
+}
+
+/// Lets about a third of the joints of one degree of freedom follow others, some of them through a third one.
+inline void coupleJoints(Random& random, Robot& robot) {
+  std::vector<int> single;
+  for (int j = 0; j < static_cast<int>(robot.joints.size()); ++j)
+    if (description::velocityCount(robot.joints[j].type) == 1) single.push_back(j);
+  // Each follows one that stands before it in a shuffled order: no circles.
+  for (size_t k = single.size(); k > 1; --k) std::swap(single[k - 1], single[random() % k]);
+  for (size_t k = 1; k < single.size(); ++k) {
+    if (uniform(random, 0, 1) < 0.65) continue;
+    description::Mimic mimic;
+    mimic.driver = single[random() % k];
+    mimic.multiplier = uniform(random, -2, 2);
+    mimic.offset = uniform(random, -1, 1);
+    robot.joints[single[k]].mimic = mimic;
+  }
 }
 
 }  // namespace tactus::test_robots
