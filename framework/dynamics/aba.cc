@@ -1,9 +1,13 @@
 #include "framework/dynamics/aba.h"
 
+#include <stdexcept>
+
 namespace tactus::dynamics {
 
 void aba(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& tau,
-         const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& qdd) {
+         const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& qdd,
+         const ExternalForces* external) {
+  if (model.coupled()) throw std::invalid_argument("aba: a joint drives another one; use ForwardDynamics");
   forwardKinematics(model, q, workspace);
   forwardVelocities(model, qd, workspace);
   worldInertias(model, workspace);
@@ -12,6 +16,7 @@ void aba(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd
     ArticulatedState& state = workspace.articulated[i];
     state.inertia = body.inertia.matrix();
     state.bias = body.velocity.cross(body.inertia * body.velocity);
+    if (external) state.bias -= external->of(i);
   }
 
   for (int i = model.dof() - 1; i >= 0; --i) {

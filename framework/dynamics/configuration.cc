@@ -38,61 +38,55 @@ Eigen::Vector3d angleOf(const Eigen::Quaterniond& quaternion) {
   return 2 * half / sine * quaternion.vec();
 }
 
+/// Calls single(body) for every body with a coordinate of its own along one axis, ball(body) for every quaternion.
+template <class Single, class Ball>
+void forEachFreeBody(const Model& model, Single single, Ball ball) {
+  for (const Model::Joint& joint : model.joints()) {
+    if (joint.driver >= 0) continue;
+    for (int i = joint.first_body; i < joint.first_body + joint.body_count; ++i) {
+      const Model::Body& body = model.bodies()[i];
+      if (body.motion == Motion::rotation || body.motion == Motion::translation) single(body);
+      if (body.motion == Motion::ball_x) ball(body);
+    }
+  }
+}
+
 }  // namespace
 
 void integrate(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& to) {
   to = q;
-  for (const Model::Body& body : model.bodies()) {
-    switch (body.motion) {
-      case Motion::rotation:
-      case Motion::translation: to[body.position] = q[body.position] + v[body.coordinate]; break;
-      case Motion::ball_x: {
-        const Eigen::Vector3d angle = v.segment<3>(body.coordinate);
-        setQuaternion(unit(unit(quaternionAt(q, body.position)) * turn(angle)), body.position, to);
-        break;
-      }
-      case Motion::ball_y:
-      case Motion::ball_z: break;
-    }
-  }
+  forEachFreeBody(
+      model, [&](const Model::Body& body) { to[body.position] += v[body.coordinate]; },
+      [&](const Model::Body& body) {
+        const Eigen::Quaterniond moved =
+            unit(quaternionAt(q, body.position)) * turn(v.segment<3>(body.coordinate));
+        setQuaternion(unit(moved), body.position, to);
+      });
 }
 
 void difference(const Model& model, const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& v) {
-  for (const Model::Body& body : model.bodies()) {
-    switch (body.motion) {
-      case Motion::rotation:
-      case Motion::translation: v[body.coordinate] = to[body.position] - from[body.position]; break;
-      case Motion::ball_x:
-        v.segment<3>(body.coordinate) =
-            angleOf(unit(quaternionAt(from, body.position)).conjugate() * unit(quaternionAt(to, body.position)));
-        break;
-      case Motion::ball_y:
-      case Motion::ball_z: break;
-    }
-  }
+  forEachFreeBody(
+      model, [&](const Model::Body& body) { v[body.coordinate] = to[body.position] - from[body.position]; },
+      [&](const Model::Body& body) {
+        const Eigen::Quaterniond start = unit(quaternionAt(from, body.position)), end = unit(quaternionAt(to, body.position));
+        v.segment<3>(body.coordinate) = angleOf(start.conjugate() * end);
+      });
 }
 
 void positionRates(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& v, Eigen::VectorXd& rates) {
-  for (const Model::Body& body : model.bodies()) {
-    switch (body.motion) {
-      case Motion::rotation:
-      case Motion::translation: rates[body.position] = v[body.coordinate]; break;
-      case Motion::ball_x: {
+  forEachFreeBody(
+      model, [&](const Model::Body& body) { rates[body.position] = v[body.coordinate]; },
+      [&](const Model::Body& body) {
         const Eigen::Vector3d half = 0.5 * v.segment<3>(body.coordinate);
         setQuaternion(quaternionAt(q, body.position) * Eigen::Quaterniond(0, half[0], half[1], half[2]), body.position,
                       rates);
-        break;
-      }
-      case Motion::ball_y:
-      case Motion::ball_z: break;
-    }
-  }
+      });
 }
 
 void normalise(const Model& model, Eigen::VectorXd& q) {
-  for (const Model::Body& body : model.bodies())
-    if (body.motion == Motion::ball_x)
-      setQuaternion(unit(quaternionAt(q, body.position)), body.position, q);
+  forEachFreeBody(
+      model, [](const Model::Body&) {},
+      [&](const Model::Body& body) { setQuaternion(unit(quaternionAt(q, body.position)), body.position, q); });
 }
 
 }  // namespace tactus::dynamics

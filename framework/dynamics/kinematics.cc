@@ -133,24 +133,41 @@ void directionJacobian(const Model& model, const Workspace& workspace, int frame
   }
 }
 
-void frameJacobian(const Model& model, const Workspace& workspace, int frame, FrameJacobianRef J) {
-  const Eigen::Vector3d p_WF = framePosition(model, workspace, frame);
-  J.setZero();
-  for (int i = model.frames()[frame].body; i >= 0; i = model.parent(i)) {
-    const MotionVector& axis = workspace.bodies[i].axis;
-    auto column = J.col(model.bodies()[i].coordinate);
-    column.head<3>() += axis.at(p_WF);
-    column.tail<3>() += axis.angular();
-  }
+namespace {
+
+/// Coordinates of a motion of the body that carries `frame`, given about the world origin.
+Vector6d seenFrom(const Model& model, const Workspace& workspace, int frame, const MotionVector& motion, Axes axes) {
+  Vector6d coordinates;
+  if (axes == Axes::world) return motion.coordinates();
+  coordinates << motion.at(framePosition(model, workspace, frame)), motion.angular();
+  if (axes == Axes::mixed) return coordinates;
+  const Eigen::Matrix3d R_FW = framePose(model, workspace, frame).linear().transpose();
+  coordinates << R_FW * coordinates.head<3>(), R_FW * coordinates.tail<3>();
+  return coordinates;
 }
 
-Vector6d frameVelocity(const Model& model, const Workspace& workspace, int frame) {
+/// The same of a spatial acceleration.  In `mixed` the velocity is that of a point that moves on: (2.49).
+Vector6d accelerationSeenFrom(const Model& model, const Workspace& workspace, int frame, const MotionVector& a,
+                              Axes axes) {
+  Vector6d coordinates = seenFrom(model, workspace, frame, a, axes);
+  if (axes != Axes::mixed) return coordinates;
+  const Vector6d v = frameVelocity(model, workspace, frame);
+  coordinates.head<3>() += v.tail<3>().cross(v.head<3>());
+  return coordinates;
+}
+
+}  // namespace
+
+void frameJacobian(const Model& model, const Workspace& workspace, int frame, FrameJacobianRef J, Axes axes) {
+  J.setZero();
+  for (int i = model.frames()[frame].body; i >= 0; i = model.parent(i))
+    J.col(model.bodies()[i].coordinate) += seenFrom(model, workspace, frame, workspace.bodies[i].axis, axes);
+}
+
+Vector6d frameVelocity(const Model& model, const Workspace& workspace, int frame, Axes axes) {
   const int body = model.frames()[frame].body;
   if (body < 0) return Vector6d::Zero();
-  const MotionVector& v = workspace.bodies[body].velocity;
-  Vector6d velocity;
-  velocity << v.at(framePosition(model, workspace, frame)), v.angular();
-  return velocity;
+  return seenFrom(model, workspace, frame, workspace.bodies[body].velocity, axes);
 }
 
 Eigen::Vector3d pointVelocity(const Model& model, const Workspace& workspace, int frame,
@@ -170,13 +187,16 @@ Eigen::Vector3d pointAccelerationBias(const Model& model, const Workspace& works
          Eigen::Vector3d(state.velocity.angular()).cross(state.velocity.at(point_W));
 }
 
-Vector6d frameAccelerationBias(const Model& model, const Workspace& workspace, int frame) {
+Vector6d frameAccelerationBias(const Model& model, const Workspace& workspace, int frame, Axes axes) {
   const int body = model.frames()[frame].body;
   if (body < 0) return Vector6d::Zero();
-  Vector6d bias;
-  bias << pointAccelerationBias(model, workspace, frame, framePosition(model, workspace, frame)),
-      workspace.bodies[body].bias_acceleration.angular();
-  return bias;
+  return accelerationSeenFrom(model, workspace, frame, workspace.bodies[body].bias_acceleration, axes);
+}
+
+Vector6d frameAcceleration(const Model& model, const Workspace& workspace, int frame, Axes axes) {
+  const int body = model.frames()[frame].body;
+  if (body < 0) return Vector6d::Zero();
+  return accelerationSeenFrom(model, workspace, frame, workspace.bodies[body].acceleration, axes);
 }
 
 }  // namespace tactus::dynamics

@@ -64,6 +64,14 @@ inline MotionVector baseAcceleration(const Eigen::Vector3d& gravity_W) {
 /// Inertias in the world: inertia.  After forwardKinematics.
 void worldInertias(const Model& model, Workspace& workspace);
 
+/// In which axes and about which point the velocity of a frame F, its Jacobian and its acceleration are given.
+/// Accelerations are the rates of change of the coordinates of such velocities.
+enum class Axes {
+  mixed,                                                           ///< of F's origin, world axes
+  world,                                                           ///< of the point now at the world origin, world axes
+  local                                                            ///< of F's origin, F's axes
+};
+
 // After forwardKinematics; `frame` is an index into Model::frames().
 
 /// X_WF.
@@ -75,17 +83,20 @@ void pointJacobian(const Model& model, const Workspace& workspace, int frame, co
 /// direction_Wᵀ J of that point, without forming J.
 void directionJacobian(const Model& model, const Workspace& workspace, int frame, const Eigen::Vector3d& point_W,
                        const Eigen::Vector3d& direction_W, RowRef row);
-/// Linear rows (of the frame's origin) first, world axes.
-void frameJacobian(const Model& model, const Workspace& workspace, int frame, FrameJacobianRef J);
+/// Linear rows first.
+void frameJacobian(const Model& model, const Workspace& workspace, int frame, FrameJacobianRef J,
+                   Axes axes = Axes::mixed);
 
 // After forwardVelocities.
 
-Vector6d frameVelocity(const Model& model, const Workspace& workspace, int frame);
+Vector6d frameVelocity(const Model& model, const Workspace& workspace, int frame, Axes axes = Axes::mixed);
 Eigen::Vector3d pointVelocity(const Model& model, const Workspace& workspace, int frame,
                               const Eigen::Vector3d& point_W);
 /// J̇ q̇ of the Jacobians above: acceleration when q̈ = 0, gravity aside.
 Eigen::Vector3d pointAccelerationBias(const Model& model, const Workspace& workspace, int frame,
                                       const Eigen::Vector3d& point_W);
-Vector6d frameAccelerationBias(const Model& model, const Workspace& workspace, int frame);
+Vector6d frameAccelerationBias(const Model& model, const Workspace& workspace, int frame, Axes axes = Axes::mixed);
+/// J q̈ + J̇ q̇.  After forwardAccelerations with the base at rest (gravity would show as its acceleration).
+Vector6d frameAcceleration(const Model& model, const Workspace& workspace, int frame, Axes axes = Axes::mixed);
 
 }  // namespace tactus::dynamics

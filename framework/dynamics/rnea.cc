@@ -30,28 +30,33 @@ void projectForces(const Model& model, Workspace& workspace, Eigen::VectorXd& ta
 }
 
 /// f = I a + v ×* I v of every body, then τ.  After forwardVelocities and with accelerations.
-void forcesToTorques(const Model& model, Workspace& workspace, Eigen::VectorXd& tau) {
-  for (int i = 0; i < model.bodyCount(); ++i)
+void forcesToTorques(const Model& model, const ExternalForces* external, Workspace& workspace,
+                     Eigen::VectorXd& tau) {
+  for (int i = 0; i < model.bodyCount(); ++i) {
     workspace.bodies[i].force = bodyForce(model.bodies()[i], workspace.bodies[i]);
+    if (external) workspace.bodies[i].force -= external->of(i);
+  }
   projectForces(model, workspace, tau);
 }
 
 }  // namespace
 
 void rnea(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& qdd,
-          const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& tau) {
+          const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& tau,
+          const ExternalForces* external) {
   forwardKinematics(model, q, workspace);
   forwardVelocities(model, qd, workspace);
   forwardAccelerations(model, qdd, baseAcceleration(gravity_W), workspace);
-  forcesToTorques(model, workspace, tau);
+  forcesToTorques(model, external, workspace, tau);
 }
 
 void nonlinearEffects(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
-                      const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& bias) {
+                      const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& bias,
+                      const ExternalForces* external) {
   forwardKinematics(model, q, workspace);
   forwardVelocities(model, qd, workspace);
   for (BodyState& state : workspace.bodies) state.acceleration = baseAcceleration(gravity_W) + state.bias_acceleration;
-  forcesToTorques(model, workspace, bias);
+  forcesToTorques(model, external, workspace, bias);
 }
 
 void biasSweep(const Model& model, const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& bias) {

@@ -29,6 +29,11 @@ class ForceVector {
     moment_ += other.moment_;
     return *this;
   }
+  ForceVector& operator-=(const ForceVector& other) {
+    force_ -= other.force_;
+    moment_ -= other.moment_;
+    return *this;
+  }
   friend ForceVector operator+(const ForceVector& a, const ForceVector& b) {
     return {a.force_ + b.force_, a.moment_ + b.moment_};
   }

@@ -145,6 +145,39 @@ TEST(Kinematics, AccelerationBiasIsTheRateOfTheVelocityAtConstantJointVelocity) 
   });
 }
 
+TEST(Kinematics, EveryChoiceOfAxesIsConsistent) {
+  for (const Axes axes : {Axes::mixed, Axes::world, Axes::local}) {
+    onRandomStates(38, [&](RandomState& state, Random& random) {
+      const int frame = randomPlace(state, random).frame;
+      Vector6d velocity[2];
+      for (const int side : {0, 1}) {
+        const double t = side ? step : -step;
+        forwardKinematics(state.model, moved(state.model, state.q, state.qd + 0.5 * t * state.qdd, t), state.workspace);
+        forwardVelocities(state.model, state.qd + t * state.qdd, state.workspace);
+        velocity[side] = frameVelocity(state.model, state.workspace, frame, axes);
+      }
+      forwardKinematics(state.model, state.q, state.workspace);
+      forwardVelocities(state.model, state.qd, state.workspace);
+      forwardAccelerations(state.model, state.qdd, MotionVector::Zero(), state.workspace);
+      Eigen::MatrixXd J(6, state.model.dof());
+      frameJacobian(state.model, state.workspace, frame, J, axes);
+      const Vector6d v = frameVelocity(state.model, state.workspace, frame, axes);
+      const Vector6d a = frameAcceleration(state.model, state.workspace, frame, axes);
+      EXPECT_TRUE(near(J * state.qd, v, 1e-11, 1));
+      EXPECT_TRUE(near(a, J * state.qdd + frameAccelerationBias(state.model, state.workspace, frame, axes), 1e-11, 1));
+      EXPECT_TRUE(near(a, (velocity[1] - velocity[0]) / (2 * step), 1e-6, 1));
+      // The coordinates are those of the mixed velocity, moved and turned.
+      const Eigen::Isometry3d X_WF = framePose(state.model, state.workspace, frame);
+      const Vector6d mixed = frameVelocity(state.model, state.workspace, frame);
+      Vector6d expected = mixed;
+      if (axes == Axes::world) expected.head<3>() += X_WF.translation().cross(mixed.tail<3>());
+      if (axes == Axes::local)
+        expected << X_WF.linear().transpose() * mixed.head<3>(), X_WF.linear().transpose() * mixed.tail<3>();
+      EXPECT_TRUE(near(v, expected, 1e-12, 1));
+    });
+  }
+}
+
 TEST(Kinematics, DirectionJacobianIsARowOfThePointJacobian) {
   onRandomStates(35, [](RandomState& state, Random& random) {
     const Place place = randomPlace(state, random);
