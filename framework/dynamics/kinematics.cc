@@ -1,6 +1,6 @@
 #include "framework/dynamics/kinematics.h"
 
-#include <cmath>
+#include "framework/dynamics/sine_cosine.h"
 
 namespace tactus::dynamics {
 
@@ -25,6 +25,13 @@ Eigen::Matrix3d rotationOf(double w, double x, double y, double z) {
 }  // namespace
 
 void forwardKinematics(const Model& model, const Eigen::VectorXd& q, Workspace& workspace) {
+  const int bodies = model.bodyCount();
+  for (int i = 0; i < bodies; ++i) {
+    const Model::Body& body = model.bodies()[i];
+    workspace.angles[i] = body.ratio * q[body.position] + body.offset;
+  }
+  sinesAndCosines(workspace.angles.data(), static_cast<int>(workspace.angles.size()), workspace.sines.data(),
+                  workspace.cosines.data());
   const Eigen::Matrix3d R_W = Eigen::Matrix3d::Identity();
   const Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   for (int i = 0; i < model.bodyCount(); ++i) {
@@ -37,8 +44,7 @@ void forwardKinematics(const Model& model, const Eigen::VectorXd& q, Workspace& 
     state.p_WB = p_WP + R_WP * body.origin.translation();
     switch (body.motion) {
       case Motion::rotation: {
-        const double angle = body.ratio * q[body.position] + body.offset;
-        const double c = std::cos(angle), s = std::sin(angle);
+        const double c = workspace.cosines[i], s = workspace.sines[i];
         state.R_WB.col(0) = c * R.col(0) + s * R.col(1);
         state.R_WB.col(1) = c * R.col(1) - s * R.col(0);
         state.R_WB.col(2) = R.col(2);
@@ -47,7 +53,7 @@ void forwardKinematics(const Model& model, const Eigen::VectorXd& q, Workspace& 
       }
       case Motion::translation:
         state.R_WB = R;
-        state.p_WB += (body.ratio * q[body.position] + body.offset) * R.col(2);
+        state.p_WB += workspace.angles[i] * R.col(2);
         state.axis = MotionVector(R.col(2), Eigen::Vector3d::Zero());
         break;
       case Motion::ball_x: {

@@ -43,11 +43,18 @@ struct ArticulatedState {
 /// Memory of the algorithms for one model, taken once.
 struct Workspace {
   explicit Workspace(const Model& model)
-      : bodies(model.bodyCount()), articulated(model.bodyCount()), composite_forces(model.bodyCount()) {}
+      : bodies(model.bodyCount()),
+        articulated(model.bodyCount()),
+        composite_forces(model.bodyCount()),
+        angles(model.bodyCount() + model.bodyCount() % 2),
+        sines(angles.size()),
+        cosines(angles.size()) {}
 
   std::vector<BodyState> bodies;
   std::vector<ArticulatedState> articulated;
   std::vector<ForceVector> composite_forces;                       ///< Iᶜ S of each body
+  /// Where each body stands along its axis (rad or m; of a ball, nothing), padded to an even number.
+  std::vector<double> angles, sines, cosines;
 };
 
 /// Poses and joint axes: R_WB, p_WB, axis.
