@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <map>
 
 #include "dsl/nearest_name.h"
@@ -10,6 +9,7 @@ namespace {
 
 const control::AttributeRow one_real{.name = "", .type = control::ValueType::real};
 
+/// Looks joints up by name, since one may follow another that stands below it in the file.
 class MimicChecker {
  public:
   MimicChecker(const RobotFile& file, Findings& findings) : findings_(findings) {

@@ -106,8 +106,8 @@ class ExtrasReader {
       findings_.error(code::misplaced_element, rotor, "joint '" + joint.name + "' is fixed: it has no rotor");
     if (description::velocityCount(joint.type) > 1)
       findings_.error(code::misplaced_element, rotor,
-                      "joint '" + joint.name + "' has several degrees of freedom: which one its rotor turns with is not "
-                      "said, leave it out");
+                      "joint '" + joint.name + "' has several degrees of freedom: which one its rotor turns with is "
+                      "not said, leave it out");
     const auto ratio = readNumbers(rotor, "gear-ratio", one_real, findings_);
     if (ratio.empty()) return;
     joint.gear_ratio = ratio[0];

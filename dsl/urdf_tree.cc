@@ -35,9 +35,9 @@ class CaughtMessages final : public console_bridge::OutputHandler {
 /// A type of joint that only Tactus knows.
 constexpr const char* spherical = "spherical";
 
-/// The text as liburdfdom can take it, nothing moved: every <collision>, <visual> and <tactus> turned into blanks, since
-/// shapes are read by Tactus and liburdfdom stumbles over capsules; what means nothing to a joint likewise; and spherical
-/// joints, which it does not know, called floating.
+/// The text as liburdfdom can take it, nothing moved: every <collision>, <visual> and <tactus> turned into blanks,
+/// since shapes are read by Tactus and liburdfdom stumbles over capsules; what means nothing to a joint likewise; and
+/// spherical joints, which it does not know, called floating.
 std::string textForUrdfdom(const XmlElement& root) {
   std::string text = root.source->text.text().substr(root.source->text.begin());
   const std::size_t shift = root.source->text.begin();

@@ -383,8 +383,8 @@ void warnOfForgottenCentres(const Robot& robot, Report& report) {
     if (!reaches_out) continue;
     report.warning(Fault::centre_of_mass,
                    "link " + quoted(link.name) +
-                       " has its centre of mass exactly at its joint, though it reaches out beside it: its weight gives "
-                       "no torque there; public models of hands often forget the <origin> of the <inertial>",
+                       " has its centre of mass exactly at its joint, though it reaches out beside it: its weight "
+                       "gives no torque there; public models of hands often forget the <origin> of the <inertial>",
                    link.place);
   }
 }

@@ -97,8 +97,8 @@ TEST(DynamicsCommand, AFloatingBaseFalls) {
   const TemporaryFolder folder;
   // A quarter turn about z, written with few digits; then 3 m/s along the world's x and 4 rad/s about the brick's z.
   const Outcome outcome =
-      tactus({"dynamics", folder.write("brick.urdf", brick), "--floating-base", "--q", "1,2,3,0.7071,0,0,0.7071", "--qd",
-              "3,0,0,0,0,4", "--tau", "0,0,0,0,0,0", "--json"});
+      tactus({"dynamics", folder.write("brick.urdf", brick), "--floating-base", "--q", "1,2,3,0.7071,0,0,0.7071",
+              "--qd", "3,0,0,0,0,4", "--tau", "0,0,0,0,0,0", "--json"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json json = outcome.json();
   EXPECT_EQ(json["joints"], nlohmann::json({"floating_base.x", "floating_base.y", "floating_base.z", "floating_base.wx",

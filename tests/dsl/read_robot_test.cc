@@ -432,8 +432,8 @@ TEST(ReadRobot, WhatMeansNothingToAJointIsPassedOverWithAWarning) {
   EXPECT_THAT(findings(text), ElementsAre("9:49 E014 an axis must not be zero"));
   text = freer("floating");
   text.insert(text.find("  </joint>"), "    <rotor inertia=\"0.1\"/>\n");
-  EXPECT_THAT(findings(text), ElementsAre("10:9 E015 joint 'j' has several degrees of freedom: which one its rotor turns "
-                                          "with is not said, leave it out"));
+  EXPECT_THAT(findings(text), ElementsAre("10:9 E015 joint 'j' has several degrees of freedom: which one its rotor "
+                                          "turns with is not said, leave it out"));
 }
 
 TEST(ReadRobot, AGearRatio) {
@@ -565,9 +565,9 @@ TEST(ReadRobot, WhatNoRobotCanBe) {
 
 TEST(ReadRobot, AForgottenCentreOfMass) {
   EXPECT_THAT(findings(changed("<collision>", "<collision><origin xyz=\"0.1 0 0\"/>")),
-              ElementsAre("3:3 W007 link 'arm' has its centre of mass exactly at its joint, though it reaches out beside "
-                          "it: its weight gives no torque there; public models of hands often forget the <origin> of "
-                          "the <inertial>"));
+              ElementsAre("3:3 W007 link 'arm' has its centre of mass exactly at its joint, though it reaches out "
+                          "beside it: its weight gives no torque there; public models of hands often forget the "
+                          "<origin> of the <inertial>"));
 }
 
 TEST(ReadRobot, EveryLinkUnfitForDynamicsIsToldAtItsPlace) {

@@ -254,8 +254,8 @@ TEST(CheckRobot, WhatOnlyDynamicsNeedIsAWarningForKinematics) {
   EXPECT_THAT(findings(robot, MassPolicy::kinematics_only),
               ElementsAre("warning 11 link 'upper' has a mass that is not positive: the robot cannot be simulated",
                           "warning 12 link 'lower' moves but has no <inertial>: the robot serves for kinematics only"));
-  const std::string to_do = " moves but has no mass: give it an <inertial> with mass and inertia, or join it by a fixed "
-                            "joint to a link that has them";
+  const std::string to_do = " moves but has no mass: give it an <inertial> with mass and inertia, or join it by a "
+                            "fixed joint to a link that has them";
   EXPECT_THAT(findings(robot), ElementsAre("error 11 link 'upper'" + to_do, "error 12 link 'lower'" + to_do));
 }
 
@@ -275,8 +275,8 @@ TEST(CheckRobot, ATensorOfOneLinkThatNoBodyHas) {
 
 TEST(CheckRobot, AForgottenCentreOfMass) {
   const auto expected = ElementsAre(
-      "warning 11 link 'upper' has its centre of mass exactly at its joint, though it reaches out beside it: its weight "
-      "gives no torque there; public models of hands often forget the <origin> of the <inertial>");
+      "warning 11 link 'upper' has its centre of mass exactly at its joint, though it reaches out beside it: its "
+      "weight gives no torque there; public models of hands often forget the <origin> of the <inertial>");
   Robot robot = soundRobot();
   robot.links[1].centre_of_mass.setZero();
   EXPECT_THAT(findings(robot), IsEmpty());                         // the elbow stands on the shoulder's axis
