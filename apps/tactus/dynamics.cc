@@ -134,6 +134,14 @@ VectorXd forwardDynamics(const dynamics::Model& model, const VectorXd& q, const 
   return result;
 }
 
+description::Robot floating(description::Robot robot) {
+  const std::string joint = "floating_base";
+  if (robot.linkIndex("world") >= 0 || robot.jointIndex(joint) >= 0)
+    throw UsageError("--floating-base adds a link 'world' and a joint '" + joint +
+                     "', but the robot has one of that name already: give it another one");
+  return description::withFloatingBase(std::move(robot), joint);
+}
+
 /// A model without masses still has kinematics; says on stderr what is missing.
 dynamics::Model makeModel(const description::Robot& robot, bool& has_masses) {
   try {
@@ -149,7 +157,7 @@ dynamics::Model makeModel(const description::Robot& robot, bool& has_masses) {
 int printDynamics(const DynamicsArguments& arguments) {
   std::vector<dsl::Diagnostic> warnings;
   description::Robot robot = dsl::readRobot(findModel(arguments.model), warnings);
-  if (arguments.floating_base) robot = description::withFloatingBase(std::move(robot));
+  if (arguments.floating_base) robot = floating(std::move(robot));
   for (const dsl::Diagnostic& warning : warnings) std::cerr << dsl::render(warning) << "\n";
   bool has_masses = false;
   const dynamics::Model model = makeModel(robot, has_masses);
@@ -218,9 +226,9 @@ numbers of --q and joints those of --qd, --qdd and --tau, which are fewer when t
 joints that follow others have none.  bias holds Coriolis, centrifugal and gravity torques; Jacobians have linear rows
 first, in world axes, at the link's origin; mass and centre_of_mass are of all links, those fixed to the base too; the
 potential energy is 0 at the world's origin.  A robot without masses gets joints, positions, dof and frames alone.
-A base that floats, or a floating joint, has x,y,z and a quaternion w,x,y,z among the positions, and the velocity of its
-origin in the world's axes with the angular velocity in its own among the rates; a planar joint x,y and an angle; a
-spherical one a quaternion, and its angular velocity in the axes of the child.
+A floating joint has x,y,z and a quaternion w,x,y,z among the positions, and among the rates the velocity of its child's
+origin in the axes that the joint starts from (of a base: the world's) and the angular velocity in the axes of the child;
+a spherical joint has the quaternion and the angular velocity alone, a planar one x,y and an angle.
 
 Examples:
   tactus dynamics robot.urdf --q 0.1,-0.2,0.3 --json

@@ -166,6 +166,17 @@ TEST(DynamicsCommand, AQuaternionThatIsNone) {
               HasSubstr("--q: the quaternion w,x,y,z of joint 'floating_base' has length 0.5, expected 1"));
 }
 
+TEST(DynamicsCommand, AFloatingBaseNeedsItsNames) {
+  const TemporaryFolder folder;
+  std::string robot = brick;
+  robot.replace(robot.find("\"body\""), 6, "\"world\"");
+  const Outcome outcome = tactus(
+      {"dynamics", folder.write("brick.urdf", robot), "--floating-base", "--q", "1,2,3,1,0,0,0", "--json"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--floating-base adds a link 'world' and a joint 'floating_base', but the robot "
+                                     "has one of that name already: give it another one"));
+}
+
 TEST(DynamicsCommand, ABaseWithoutMassFloatsInKinematicsAlone) {
   const TemporaryFolder folder;
   const Outcome outcome = tactus(
