@@ -46,6 +46,7 @@ inline constexpr Code unknown_model{"E050", "the robot's model cannot be found"}
 inline constexpr Code wrong_start{"E051", "the start has not one value for each joint"};
 inline constexpr Code start_outside_limits{"E052", "the start is outside a joint's limits"};
 inline constexpr Code carrier_not_upright{"E053", "an object stands on one whose top is not level"};
+inline constexpr Code joint_not_for_stacks{"E054", "a joint follows another one or has several degrees of freedom"};
 // Compiling.
 inline constexpr Code lacking_ability{"E060", "the back end cannot honour what the stack asks for"};
 inline constexpr Code refused_by_factory{"E061", "a task, a signal or a back end refuses its values"};
@@ -58,12 +59,16 @@ inline constexpr Code kinematic_loop{"E082", "joints form a loop or share a chil
 inline constexpr Code unsupported_joint{"E083", "the type of a joint is not supported"};
 inline constexpr Code reversed_limits{"E084", "a lower limit lies above its upper limit"};
 inline constexpr Code refused_by_urdf{"E085", "liburdfdom refuses the file"};
+inline constexpr Code bad_mimic{"E086", "a joint cannot follow the one that its mimic names"};
+inline constexpr Code impossible_robot{"E087", "no robot can be as the numbers say"};
 // Warnings.
 inline constexpr Code no_inertia{"W001", "a moving link has no mass: kinematics only"};
 inline constexpr Code bad_mass{"W002", "the mass of a link is not positive"};
 inline constexpr Code bad_inertia{"W003", "a tensor is not that of a rigid body"};
 inline constexpr Code shape_not_felt{"W004", "a collision shape is replaced or left out"};
 inline constexpr Code urdf_remark{"W005", "liburdfdom passed over a part of the file"};
+inline constexpr Code meaningless_part{"W006", "a joint of this type makes no use of a part of its description"};
+inline constexpr Code forgotten_centre{"W007", "the centre of mass of a link was probably forgotten"};
 inline constexpr Code unused_signal{"W010", "nothing reads a signal"};
 }  // namespace code
 
@@ -75,10 +80,12 @@ inline constexpr std::array all_codes{
     code::level_order,        code::unknown_link,       code::unknown_joint,    code::unknown_object,
     code::unknown_port,       code::wrong_port_type,    code::unknown_class,    code::unknown_parameter,
     code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
-    code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::lacking_ability,
+    code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::joint_not_for_stacks,
+    code::lacking_ability,
     code::refused_by_factory, code::unfit_for_dynamics, code::plugin_failed,    code::no_root_link,
     code::several_root_links, code::kinematic_loop,     code::unsupported_joint, code::reversed_limits,
-    code::refused_by_urdf,    code::no_inertia,         code::bad_mass,         code::bad_inertia,
-    code::shape_not_felt,     code::urdf_remark,        code::unused_signal};
+    code::refused_by_urdf,    code::bad_mimic,          code::impossible_robot, code::no_inertia,
+    code::bad_mass,           code::bad_inertia,        code::shape_not_felt,   code::urdf_remark,
+    code::meaningless_part,   code::forgotten_centre,   code::unused_signal};
 
 }  // namespace tactus::dsl

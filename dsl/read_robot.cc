@@ -1,52 +1,43 @@
 #include "dsl/read_robot.h"
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
-
 #include "dsl/findings.h"
 #include "dsl/robot_file.h"
 #include "dsl/urdf_tree.h"
+#include "framework/dynamics/check_robot.h"
 
 namespace tactus::dsl {
 namespace {
 
 using description::Robot;
 
-/// Mass of the body that a link is part of: its own and that of everything fixed to it.
-double mergedMass(const Robot& robot, int link) {
-  double mass = robot.links[static_cast<std::size_t>(link)].mass;
-  for (const auto& joint : robot.joints)
-    if (joint.parent == link && joint.type == description::JointType::fixed) mass += mergedMass(robot, joint.child);
-  return mass;
+const Code& codeOf(dynamics::Fault fault) {
+  switch (fault) {
+    case dynamics::Fault::no_inertial: return code::no_inertia;
+    case dynamics::Fault::no_mass: return code::bad_mass;
+    case dynamics::Fault::inertia: return code::bad_inertia;
+    case dynamics::Fault::centre_of_mass: return code::forgotten_centre;
+    case dynamics::Fault::mimic: return code::bad_mimic;
+    case dynamics::Fault::structure:
+    case dynamics::Fault::number: break;
+  }
+  return code::impossible_robot;
 }
 
-/// Principal moments of a rigid body are positive and none is greater than the sum of the others.
-bool isRigidBodyTensor(const Eigen::Matrix3d& inertia) {
-  const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
-  const double rounding = 1e-9 * moments.cwiseAbs().maxCoeff();
-  return moments[0] > 0 && moments[2] <= moments[0] + moments[1] + rounding;
+const XmlElement& elementAt(const description::Place& place, const RobotFile& file) {
+  for (const auto* list : {&file.links, &file.joints})
+    for (const XmlElement* element : *list)
+      if (element->place().line == place.line && element->place().column == place.column) return *element;
+  return *file.root;
 }
 
-/// What makes the robot unfit for dynamics, but not for kinematics.
-void warnOfMasses(const Robot& robot, const RobotFile& file, Findings& findings) {
-  for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    const auto& link = robot.links[i];
-    const XmlElement& element = *file.links[i];
-    const auto mover = std::find_if(robot.joints.begin(), robot.joints.end(),
-                                    [&](const auto& joint) { return joint.child == static_cast<int>(i); });
-    const bool moving = mover != robot.joints.end() && mover->type != description::JointType::fixed;
-    if (!link.has_inertial) {
-      if (moving && !(mergedMass(robot, static_cast<int>(i)) > 0))
-        findings.warning(code::no_inertia, element,
-                         "link '" + link.name + "' moves but has no <inertial>: the robot serves for kinematics only");
-    } else if (!(link.mass > 0)) {
-      if (moving || link.mass < 0)
-        findings.warning(code::bad_mass, element,
-                         "link '" + link.name + "' has a mass that is not positive: the robot cannot be simulated");
-    } else if (!isRigidBodyTensor(link.inertia)) {
-      findings.warning(code::bad_inertia, element,
-                       "link '" + link.name + "' has an inertia tensor that no rigid body has: its principal moments "
-                       "must be positive, and each at most the sum of the two others");
+/// What no reader of XML can see.  Faults of masses hinder dynamics alone, and are warnings here.
+void addValidation(const Robot& robot, const RobotFile& file, Findings& findings) {
+  for (const auto& found : dynamics::validate(robot, dynamics::MassPolicy::kinematics_only)) {
+    const XmlElement& element = elementAt(found.place, file);
+    if (found.severity == dynamics::RobotFinding::Severity::error) {
+      findings.error(codeOf(found.fault), element, found.message);
+    } else {
+      findings.warning(codeOf(found.fault), element, found.message);
     }
   }
 }
@@ -61,7 +52,8 @@ Robot readRobot(const std::string& file, std::vector<Diagnostic>& warnings) {
   findings.throwErrors();
   addTactusElements(checked, robot, findings);
   findings.throwErrors();
-  warnOfMasses(robot, checked, findings);
+  addValidation(robot, checked, findings);
+  findings.throwErrors();
   warnings.insert(warnings.end(), findings.warnings().begin(), findings.warnings().end());
   return robot;
 }

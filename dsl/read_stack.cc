@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "dsl/element_checker.h"
 #include "dsl/model_search.h"
@@ -126,11 +127,36 @@ class StackReader {
     try {
       std::vector<Diagnostic> warnings;
       stack_.robot = readRobot(file, warnings);
-      robot_known_ = true;
       add(std::move(warnings));
+      const auto refusal = refuseForStacks(stack_.robot, stack_.files.at(file));
+      robot_known_ = !refusal;
+      if (refusal) add({*refusal});
     } catch (const InvalidStack& error) {
       add(error.diagnostics);
     }
+  }
+
+  /// Plant and tasks know joints of one coordinate each: the first joint that is none, with the count of all.
+  static std::optional<Diagnostic> refuseForStacks(const description::Robot& robot, const std::string& text) {
+    const auto hasNoPlace = [](const description::Joint& joint) {
+      return joint.mimic || description::velocityCount(joint.type) > 1;
+    };
+    const auto first = std::find_if(robot.joints.begin(), robot.joints.end(), hasNoPlace);
+    if (first == robot.joints.end()) return std::nullopt;
+    const auto others = std::count_if(first + 1, robot.joints.end(), hasNoPlace);
+    Diagnostic diagnostic;
+    diagnostic.code = code::joint_not_for_stacks.id;
+    diagnostic.message =
+        "joint '" + first->name + "' " +
+        (first->mimic ? "follows joint '" + robot.joints[static_cast<std::size_t>(first->mimic->driver)].name + "'"
+                      : std::string("has several degrees of freedom")) +
+        ": a stack runs robots whose joints are revolute, continuous, prismatic or fixed and move on their own" +
+        (others == 0 ? "" : "; " + std::to_string(others) + " more of this one are not like that");
+    diagnostic.place = first->place;
+    diagnostic.length = 6;                                         // "<joint"
+    diagnostic.source_line = SourceText(first->place.file, text).lineAt(first->place.line);
+    diagnostic.path = "/robot/joint[@name=" + first->name + "]";
+    return diagnostic;
   }
 
   void readStart(const CheckedElement& element) {

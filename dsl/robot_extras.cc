@@ -13,6 +13,7 @@ using description::Robot;
 
 const AttributeRow three_reals{.name = "", .type = ValueType::reals, .count = 3};
 const AttributeRow three_lengths{.name = "", .type = ValueType::reals, .lower = 0, .lower_open = true, .count = 3};
+const AttributeRow one_real{.name = "", .type = ValueType::real};
 const AttributeRow positive{.name = "", .type = ValueType::real, .lower = 0, .lower_open = true};
 const AttributeRow not_negative{.name = "", .type = ValueType::real, .lower = 0};
 
@@ -99,10 +100,19 @@ class ExtrasReader {
   }
 
   void addRotor(const XmlElement& rotor, description::Joint& joint) {
-    refuseOtherAttributes(rotor, {"inertia"}, findings_);
+    refuseOtherAttributes(rotor, {"inertia", "gear-ratio"}, findings_);
     joint.rotor_inertia = number(rotor, "inertia", not_negative);
     if (joint.type == description::JointType::fixed)
       findings_.error(code::misplaced_element, rotor, "joint '" + joint.name + "' is fixed: it has no rotor");
+    if (description::velocityCount(joint.type) > 1)
+      findings_.error(code::misplaced_element, rotor,
+                      "joint '" + joint.name + "' has several degrees of freedom: which one its rotor turns with is "
+                      "not said, leave it out");
+    const auto ratio = readNumbers(rotor, "gear-ratio", one_real, findings_);
+    if (ratio.empty()) return;
+    joint.gear_ratio = ratio[0];
+    if (ratio[0] == 0)
+      findings_.errorAtValue(code::bad_value, rotor, *rotor.attribute("gear-ratio"), "a gear ratio must not be zero");
   }
 
   void readTactus(const XmlElement& tactus) {

@@ -1,5 +1,6 @@
 #include "dsl/robot_file.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -28,6 +29,7 @@ class RobotChecker {
     }
     for (const XmlElement* link : file_.links) checkLink(*link);
     for (const XmlElement* joint : file_.joints) checkJoint(*joint);
+    checkMimics(file_, findings_);
     if (!findings_.hasErrors()) checkTree();
   }
 
@@ -61,17 +63,23 @@ class RobotChecker {
     checkOrigin(joint);
     checkEnd(joint, "parent");
     checkEnd(joint, "child");
-    if (const XmlElement* mimic = joint.child("mimic"))
-      findings_.error(code::unsupported_joint, *mimic, "joints that mimic others are not supported yet");
     const XmlAttribute* type = requireAttribute(joint, "type", findings_);
     if (!type) return;
-    static const std::vector<std::string> supported{"revolute", "continuous", "prismatic", "fixed"};
+    static const std::vector<std::string> supported{"revolute", "continuous", "prismatic", "fixed",
+                                                    "planar",   "spherical",  "floating"};
     if (std::find(supported.begin(), supported.end(), type->value) == supported.end())
       return findings_.errorAtValue(code::unsupported_joint, joint, *type,
                                     "joints of type '" + type->value +
-                                        "' are not supported: expected revolute, continuous, prismatic or fixed",
+                                        "' are not supported: expected revolute, continuous, prismatic, fixed, "
+                                        "planar, spherical or floating",
                                     nearestName(type->value, supported));
-    if (type->value == "fixed") return;
+    for (const auto& part : joint.children)
+      if (isMeaningless(type->value, part->name))
+        findings_.warning(code::meaningless_part, *part,
+                          "joint '" + nameOf(joint) + "' is " + type->value + ": its <" + part->name +
+                              "> is passed over");
+    if (type->value == "planar" && joint.child("axis")) checkAxis(*joint.child("axis"));
+    if (type->value == "fixed" || hasSeveralFreedoms(type->value)) return;
     if (const XmlElement* axis = joint.child("axis")) checkAxis(*axis);
     if (const XmlElement* dynamics = joint.child("dynamics"))
       for (const char* name : {"damping", "friction"}) readNumbers(*dynamics, name, not_negative, findings_);
@@ -153,6 +161,16 @@ class RobotChecker {
 };
 
 }  // namespace
+
+bool hasSeveralFreedoms(std::string_view joint_type) {
+  return joint_type == "planar" || joint_type == "spherical" || joint_type == "floating";
+}
+
+bool isMeaningless(std::string_view joint_type, std::string_view part) {
+  if (!hasSeveralFreedoms(joint_type)) return false;
+  if (part == "axis") return joint_type != "planar";
+  return part == "limit" || part == "dynamics" || part == "safety_controller" || part == "calibration";
+}
 
 RobotFile checkRobotFile(const std::string& name, Findings& findings) {
   RobotFile file;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dsl/findings.h"
@@ -19,6 +20,15 @@ struct RobotFile {
 
 /// Reads and checks; what is wrong goes to `findings`.
 RobotFile checkRobotFile(const std::string& file, Findings& findings);
+
+/// Planar, spherical or floating.
+bool hasSeveralFreedoms(std::string_view joint_type);
+
+/// Is that part of a joint's description, e.g. "limit", without use for a joint of that type?
+bool isMeaningless(std::string_view joint_type, std::string_view part);
+
+/// Every mimic names another joint that moves, both have one degree of freedom, and none follows itself.
+void checkMimics(const RobotFile& file, Findings& findings);
 
 /// Adds what liburdfdom does not know: shapes that touch, rotor inertia, skin and groups.
 void addTactusElements(const RobotFile& file, description::Robot& robot, Findings& findings);

@@ -32,20 +32,34 @@ class CaughtMessages final : public console_bridge::OutputHandler {
   console_bridge::LogLevel level_;
 };
 
-/// The text with every <collision>, <visual> and <tactus> turned into blanks, so that all else keeps its place:
-/// shapes are read by Tactus, and liburdfdom stumbles over capsules.
-std::string withoutShapes(const XmlElement& root) {
+/// A type of joint that only Tactus knows.
+constexpr const char* spherical = "spherical";
+
+/// The text as liburdfdom can take it, nothing moved: every <collision>, <visual> and <tactus> turned into blanks,
+/// since shapes are read by Tactus and liburdfdom stumbles over capsules; what means nothing to a joint likewise; and
+/// spherical joints, which it does not know, called floating.
+std::string textForUrdfdom(const XmlElement& root) {
   std::string text = root.source->text.text().substr(root.source->text.begin());
   const std::size_t shift = root.source->text.begin();
   const auto blank = [&](const XmlElement& element) {
     for (std::size_t i = element.at - shift; i < element.end - shift; ++i)
       if (text[i] != '\n') text[i] = ' ';
   };
+  const auto callFloating = [&](const XmlAttribute& type) {
+    const char quote = text[type.value_at - 1 - shift];
+    std::string word = std::string("floating") + quote;
+    word.resize(type.value_size + 1, ' ');                         // "spherical" and its quote are longer by one
+    text.replace(type.value_at - shift, word.size(), word);
+  };
   for (const auto& child : root.children) {
     if (child->name == "tactus") blank(*child);
-    if (child->name != "link") continue;
+    const bool is_joint = child->name == "joint";
+    if (!is_joint && child->name != "link") continue;
+    const XmlAttribute* type = is_joint ? child->attribute("type") : nullptr;
     for (const auto& part : child->children)
-      if (part->name == "collision" || part->name == "visual") blank(*part);
+      if (part->name == "collision" || part->name == "visual" || (type && isMeaningless(type->value, part->name)))
+        blank(*part);
+    if (type && type->value == spherical) callFloating(*type);
   }
   return text;
 }
@@ -76,20 +90,28 @@ description::Link linkOf(const urdf::Link& from, const XmlElement& element) {
   return link;
 }
 
-description::JointType typeOf(const urdf::Joint& from) {
-  if (from.type == urdf::Joint::FIXED) return description::JointType::fixed;
-  return from.type == urdf::Joint::PRISMATIC ? description::JointType::prismatic : description::JointType::revolute;
+description::JointType typeOf(const urdf::Joint& from, const XmlElement& element) {
+  using description::JointType;
+  if (element.attribute("type")->value == spherical) return JointType::spherical;
+  switch (from.type) {
+    case urdf::Joint::FIXED: return JointType::fixed;
+    case urdf::Joint::PRISMATIC: return JointType::prismatic;
+    case urdf::Joint::PLANAR: return JointType::planar;
+    case urdf::Joint::FLOATING: return JointType::floating;
+    default: return JointType::revolute;
+  }
 }
 
 description::Joint jointOf(const urdf::Joint& from, const description::Robot& robot, const XmlElement& element) {
   description::Joint joint;
   joint.name = from.name;
   joint.place = element.place();
-  joint.type = typeOf(from);
+  joint.type = typeOf(from, element);
   joint.parent = robot.linkIndex(from.parent_link_name);
   joint.child = robot.linkIndex(from.child_link_name);
   joint.origin = poseOf(from.parent_to_joint_origin_transform);
   if (joint.type == description::JointType::fixed) return joint;
+  if (joint.type == description::JointType::spherical || joint.type == description::JointType::floating) return joint;
   joint.axis = vectorOf(from.axis).normalized();
   if (from.limits) {
     joint.effort = from.limits->effort;
@@ -113,7 +135,7 @@ description::Robot buildUrdfTree(const RobotFile& file, Findings& findings) {
   urdf::ModelInterfaceSharedPtr model;
   {
     CaughtMessages caught;
-    model = urdf::parseURDF(withoutShapes(*file.root));
+    model = urdf::parseURDF(textForUrdfdom(*file.root));
     std::string said;
     for (const std::string& text : caught.texts) said += (said.empty() ? "" : "; ") + text;
     if (!model) {
@@ -128,6 +150,11 @@ description::Robot buildUrdfTree(const RobotFile& file, Findings& findings) {
     robot.links.push_back(linkOf(*model->getLink(element->attribute("name")->value), *element));
   for (const XmlElement* element : file.joints)
     robot.joints.push_back(jointOf(*model->getJoint(element->attribute("name")->value), robot, *element));
+  for (description::Joint& joint : robot.joints) {
+    const auto& mimic = model->getJoint(joint.name)->mimic;
+    if (mimic)
+      joint.mimic = description::Mimic{robot.jointIndex(mimic->joint_name), mimic->multiplier, mimic->offset};
+  }
   robot.root = robot.linkIndex(model->getRoot()->name);
   return robot;
 }

@@ -1,12 +1,13 @@
 #include "framework/dynamics/check_robot.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
-
-#include "framework/dynamics/model.h"
 
 namespace tactus::dynamics {
 namespace {
@@ -15,12 +16,15 @@ using description::Joint;
 using description::JointType;
 using description::Link;
 using description::Robot;
+using Severity = RobotFinding::Severity;
 
 /// Principal moments may miss the triangle inequality by this share: they are often written with six digits.
 constexpr double triangle_tolerance = 1e-6;
 /// A smallest moment below this share of the greatest is rounding, not inertia.
 constexpr double definite_tolerance = 1e-12;
 constexpr double unit_tolerance = 1e-6;
+/// What lies nearer to an axis than this lies on it (m).
+constexpr double beside_axis = 1e-3;
 
 std::string quoted(const std::string& name) { return "'" + name + "'"; }
 
@@ -41,16 +45,38 @@ std::string where(const description::Place& place) {
   return place.line > 0 ? " (line " + std::to_string(place.line) + ")" : "";
 }
 
+/// Gathers what is found, in the order in which Model looks.
+class Report {
+ public:
+  void error(Fault fault, std::string message, const description::Place& place) {
+    findings_.push_back({Severity::error, fault, std::move(message), place});
+  }
+  void warning(Fault fault, std::string message, const description::Place& place) {
+    findings_.push_back({Severity::warning, fault, std::move(message), place});
+  }
+  bool hasErrors() const {
+    return std::ranges::any_of(findings_, [](const RobotFinding& one) { return one.severity == Severity::error; });
+  }
+  void throwFirst() const {
+    for (const RobotFinding& one : findings_)
+      if (one.severity == Severity::error) throw ModelError(one.message, one.place);
+  }
+  std::vector<RobotFinding> take() { return std::move(findings_); }
+
+ private:
+  std::vector<RobotFinding> findings_;
+};
+
 template <class Named>
-void checkUnique(const std::vector<Named>& all, const std::string& kind) {
+void findDoubles(const std::vector<Named>& all, const std::string& kind, Report& report) {
   std::map<std::string, const Named*> seen;
   for (const Named& one : all) {
     const auto [first, fresh] = seen.emplace(one.name, &one);
-    if (!fresh) {
-      throw ModelError("two " + kind + "s are named " + quoted(one.name) + where(first->second->place) +
-                           ": give one of them another name",
-                       one.place);
-    }
+    if (fresh) continue;
+    report.error(Fault::structure,
+                 "two " + kind + "s are named " + quoted(one.name) + where(first->second->place) +
+                     ": give one of them another name",
+                 one.place);
   }
 }
 
@@ -58,50 +84,45 @@ bool isRotation(const Eigen::Matrix3d& R) {
   return (R.transpose() * R).isIdentity(unit_tolerance) && R.determinant() > 0;
 }
 
-void checkLink(const Link& link) {
-  const std::string subject = "link " + quoted(link.name);
+void examineLink(const Link& link, Report& report) {
   if (!link.has_inertial) return;
-  if (!std::isfinite(link.mass)) throw ModelError(subject + ": its mass is not a finite number", link.place);
-  if (link.mass < 0) {
-    throw ModelError(subject + ": its mass is " + text(link.mass) + " kg; a mass cannot be negative", link.place);
+  const auto error = [&](const std::string& what) {
+    report.error(Fault::number, "link " + quoted(link.name) + ": its " + what, link.place);
+  };
+  if (!std::isfinite(link.mass)) {
+    error("mass is not a finite number");
+  } else if (link.mass < 0) {
+    error("mass is " + text(link.mass) + " kg; a mass cannot be negative");
   }
-  if (!link.centre_of_mass.allFinite()) {
-    throw ModelError(subject + ": its centre of mass is not made of finite numbers", link.place);
-  }
+  if (!link.centre_of_mass.allFinite()) error("centre of mass is not made of finite numbers");
   if (!link.inertia.allFinite()) {
-    throw ModelError(subject + ": its inertia is not made of finite numbers", link.place);
-  }
-  if (!link.inertia.isApprox(link.inertia.transpose(), unit_tolerance)) {
-    throw ModelError(subject + ": its inertia matrix is not symmetric", link.place);
+    error("inertia is not made of finite numbers");
+  } else if (!link.inertia.isApprox(link.inertia.transpose(), unit_tolerance)) {
+    error("inertia matrix is not symmetric");
   }
 }
 
-void checkJoint(const Joint& joint) {
-  const std::string subject = "joint " + quoted(joint.name);
+void examineJoint(const Joint& joint, Report& report) {
+  const auto error = [&](const std::string& what) {
+    report.error(Fault::number, "joint " + quoted(joint.name) + what, joint.place);
+  };
   if (!joint.origin.matrix().allFinite()) {
-    throw ModelError(subject + ": its origin is not made of finite numbers", joint.place);
-  }
-  if (!isRotation(joint.origin.linear())) {
-    throw ModelError(subject + ": the orientation of its origin is not a rotation", joint.place);
+    error(": its origin is not made of finite numbers");
+  } else if (!isRotation(joint.origin.linear())) {
+    error(": the orientation of its origin is not a rotation");
   }
   if (joint.type == JointType::fixed) return;
   const bool has_axis = joint.type != JointType::spherical && joint.type != JointType::floating;
-  if (has_axis && (!joint.axis.allFinite() || std::abs(joint.axis.norm() - 1) > unit_tolerance)) {
-    throw ModelError(subject + ": its axis must have length 1, not " + text(joint.axis.norm()), joint.place);
-  }
+  if (has_axis && (!joint.axis.allFinite() || std::abs(joint.axis.norm() - 1) > unit_tolerance))
+    error(": its axis must have length 1, not " + text(joint.axis.norm()));
   if (std::isnan(joint.lower) || std::isnan(joint.upper)) {
-    throw ModelError(subject + ": its limits are not numbers", joint.place);
-  }
-  if (joint.lower > joint.upper) {
-    throw ModelError(subject + ": its lower limit " + text(joint.lower) + " lies above its upper limit " +
-                         text(joint.upper),
-                     joint.place);
+    error(": its limits are not numbers");
+  } else if (joint.lower > joint.upper) {
+    error(": its lower limit " + text(joint.lower) + " lies above its upper limit " + text(joint.upper));
   }
   const auto notNegative = [&](double value, const char* what, bool may_be_infinite) {
-    if (std::isnan(value) || value < 0 || (!may_be_infinite && std::isinf(value))) {
-      throw ModelError(subject + ": its " + what + " is " + text(value) + "; it must be a number of at least 0",
-                       joint.place);
-    }
+    if (std::isnan(value) || value < 0 || (!may_be_infinite && std::isinf(value)))
+      error(": its " + std::string(what) + " is " + text(value) + "; it must be a number of at least 0");
   };
   notNegative(joint.effort, "effort limit", true);
   notNegative(joint.velocity, "velocity limit", true);
@@ -109,149 +130,303 @@ void checkJoint(const Joint& joint) {
   notNegative(joint.friction, "friction", false);
   notNegative(joint.rotor_inertia, "rotor inertia", false);
   if (!std::isfinite(joint.gear_ratio) || joint.gear_ratio == 0)
-    throw ModelError(subject + ": its gear ratio is " + text(joint.gear_ratio) + "; it must be a number other than 0",
-                     joint.place);
+    error(": its gear ratio is " + text(joint.gear_ratio) + "; it must be a number other than 0");
   if (joint.rotor_inertia > 0 && description::velocityCount(joint.type) > 1)
-    throw ModelError(subject + " has several degrees of freedom: which one its rotor turns with is not said, leave it out",
-                     joint.place);
+    error(" has several degrees of freedom: which one its rotor turns with is not said, leave it out");
 }
 
-}  // namespace
+void examineNumbers(const Robot& robot, Report& report) {
+  for (const Link& link : robot.links) examineLink(link, report);
+  for (const Joint& joint : robot.joints) examineJoint(joint, report);
+}
 
-std::vector<int> checkStructure(const Robot& robot) {
+/// The joint that carries each link, -1 for roots; none at all when a joint's ends leave no tree.
+std::optional<std::vector<int>> findCarriers(const Robot& robot, Report& report) {
   const int link_count = static_cast<int>(robot.links.size());
-  const int joint_count = static_cast<int>(robot.joints.size());
-  if (link_count == 0) throw ModelError("the robot " + quoted(robot.name) + " has no links", robot.place);
-  checkUnique(robot.links, "link");
-  checkUnique(robot.joints, "joint");
-
-  std::vector<int> carrier(link_count, -1);                        // the joint that carries each link
-  std::vector<std::vector<int>> joints_below(link_count);
-  for (int j = 0; j < joint_count; ++j) {
+  std::vector<int> carriers(robot.links.size(), -1);
+  const auto isLink = [&](int link) { return link >= 0 && link < link_count; };
+  bool sound = true;
+  for (int j = 0; j < static_cast<int>(robot.joints.size()); ++j) {
     const Joint& joint = robot.joints[j];
     const std::string subject = "joint " + quoted(joint.name);
-    if (joint.parent < 0 || joint.parent >= link_count) {
-      throw ModelError(subject + " has no parent link: name one of the robot's links", joint.place);
-    }
-    if (joint.child < 0 || joint.child >= link_count) {
-      throw ModelError(subject + " has no child link: name one of the robot's links", joint.place);
-    }
+    const auto error = [&](const std::string& message) {
+      report.error(Fault::structure, message, joint.place);
+      sound = false;
+    };
+    if (!isLink(joint.parent)) error(subject + " has no parent link: name one of the robot's links");
+    if (!isLink(joint.child)) error(subject + " has no child link: name one of the robot's links");
+    if (!isLink(joint.parent) || !isLink(joint.child)) continue;
     const std::string child = quoted(robot.links[joint.child].name);
+    int& carrier = carriers[joint.child];
     if (joint.child == joint.parent) {
-      throw ModelError(subject + " joins link " + child + " to itself: its parent and child must differ", joint.place);
+      error(subject + " joins link " + child + " to itself: its parent and child must differ");
+    } else if (carrier >= 0) {
+      error("link " + child + " is the child of two joints, " + quoted(robot.joints[carrier].name) + " and " +
+            quoted(joint.name) + ": a robot is a tree, remove one of them");
+    } else {
+      carrier = j;
     }
-    if (carrier[joint.child] >= 0) {
-      throw ModelError("link " + child + " is the child of two joints, " +
-                           quoted(robot.joints[carrier[joint.child]].name) + " and " + quoted(joint.name) +
-                           ": a robot is a tree, remove one of them",
-                       joint.place);
-    }
-    carrier[joint.child] = j;
-    joints_below[joint.parent].push_back(j);
   }
+  return sound ? std::optional(carriers) : std::nullopt;
+}
 
+int findRoot(const Robot& robot, const std::vector<int>& carriers, Report& report) {
   int root = -1;
-  for (int i = 0; i < link_count; ++i) {
-    if (carrier[i] >= 0) continue;
-    if (root >= 0) {
-      throw ModelError("the robot has two roots, " + quoted(robot.links[root].name) + " and " +
-                           quoted(robot.links[i].name) + ": join the second one to the tree",
-                       robot.links[i].place);
+  for (int i = 0; i < static_cast<int>(carriers.size()); ++i) {
+    if (carriers[i] >= 0) continue;
+    if (root < 0) {
+      root = i;
+    } else {
+      report.error(Fault::structure,
+                   "the robot has two roots, " + quoted(robot.links[root].name) + " and " +
+                       quoted(robot.links[i].name) + ": join the second one to the tree",
+                   robot.links[i].place);
     }
-    root = i;
   }
   if (root < 0) {
-    throw ModelError("every link is the child of a joint, so the joints form a loop: one link must be the base",
-                     robot.joints.front().place);
+    report.error(Fault::structure,
+                 "every link is the child of a joint, so the joints form a loop: one link must be the base",
+                 robot.joints.front().place);
+  } else if (robot.root != root && !report.hasErrors()) {
+    report.error(Fault::structure,
+                 "the root of the robot is link " + quoted(robot.links[root].name) + ", which no joint carries",
+                 robot.links[root].place);
   }
-  if (robot.root != root) {
-    throw ModelError("the root of the robot is link " + quoted(robot.links[root].name) + ", which no joint carries",
-                     robot.links[root].place);
-  }
+  return root;
+}
 
+/// Does the way up from a link run in a circle?
+bool hangsInLoop(const Robot& robot, const std::vector<int>& carriers, int link) {
+  for (std::size_t steps = 0; carriers[link] >= 0; ++steps) {
+    if (steps == carriers.size()) return true;
+    link = robot.joints[carriers[link]].parent;
+  }
+  return false;
+}
+
+/// Joints depth-first from the root, children in file order.
+std::vector<int> depthFirst(const Robot& robot, const std::vector<int>& carriers, int root) {
+  std::vector<std::vector<int>> joints_below(robot.links.size());
+  for (int j = 0; j < static_cast<int>(robot.joints.size()); ++j)
+    if (carriers[robot.joints[j].child] == j) joints_below[robot.joints[j].parent].push_back(j);
   std::vector<int> order;
-  std::vector<bool> reached(link_count, false);
   std::vector<int> pending(joints_below[root].rbegin(), joints_below[root].rend());
-  reached[root] = true;
   while (!pending.empty()) {
     const int j = pending.back();
     pending.pop_back();
-    const int child = robot.joints[j].child;
     order.push_back(j);
-    reached[child] = true;
-    pending.insert(pending.end(), joints_below[child].rbegin(), joints_below[child].rend());
-  }
-  for (int i = 0; i < link_count; ++i) {
-    if (reached[i]) continue;
-    throw ModelError("link " + quoted(robot.links[i].name) + " hangs in a loop of joints that never reaches the base " +
-                         quoted(robot.links[root].name) + ": open the loop",
-                     robot.links[i].place);
+    const std::vector<int>& below = joints_below[robot.joints[j].child];
+    pending.insert(pending.end(), below.rbegin(), below.rend());
   }
   return order;
 }
 
-std::vector<Drive> resolveMimics(const Robot& robot) {
+/// Empty with errors.
+std::vector<int> examineStructure(const Robot& robot, Report& report) {
+  if (robot.links.empty()) {
+    report.error(Fault::structure, "the robot " + quoted(robot.name) + " has no links", robot.place);
+    return {};
+  }
+  findDoubles(robot.links, "link", report);
+  findDoubles(robot.joints, "joint", report);
+  const std::optional<std::vector<int>> found = findCarriers(robot, report);
+  if (!found) return {};
+  const std::vector<int>& carriers = *found;
+  const int root = findRoot(robot, carriers, report);
+  if (root < 0) return {};
+  for (int i = 0; i < static_cast<int>(robot.links.size()); ++i) {
+    if (!hangsInLoop(robot, carriers, i)) continue;
+    report.error(Fault::structure,
+                 "link " + quoted(robot.links[i].name) + " hangs in a loop of joints that never reaches the base " +
+                     quoted(robot.links[root].name) + ": open the loop",
+                 robot.links[i].place);
+  }
+  return report.hasErrors() ? std::vector<int>{} : depthFirst(robot, carriers, root);
+}
+
+/// No drive, and why in `report`, when the way from a joint through its mimics does not end at a free joint.
+std::optional<Drive> driveOf(const Robot& robot, int j, Report& report) {
   const int joint_count = static_cast<int>(robot.joints.size());
   const auto hasOneCoordinate = [](const Joint& joint) { return description::velocityCount(joint.type) == 1; };
-  std::vector<Drive> drives(robot.joints.size());
-  for (int j = 0; j < joint_count; ++j) {
-    const Joint& driven = robot.joints[j];
-    const std::string subject = "joint " + quoted(driven.name);
-    Drive& drive = drives[j];
-    drive.driver = j;
-    int links = 0;
-    while (robot.joints[drive.driver].mimic) {
-      const description::Mimic& mimic = *robot.joints[drive.driver].mimic;
-      if (mimic.driver < 0 || mimic.driver >= joint_count)
-        throw ModelError(subject + " mimics a joint that the robot does not have: name one of its joints",
-                         driven.place);
-      if (!std::isfinite(mimic.multiplier) || !std::isfinite(mimic.offset))
-        throw ModelError(subject + ": the multiplier and offset of its mimic must be finite numbers", driven.place);
-      if (++links > joint_count)
-        throw ModelError(subject + " mimics itself, directly or through others: one of them must move freely",
-                         driven.place);
-      drive.offset += drive.ratio * mimic.offset;
-      drive.ratio *= mimic.multiplier;
-      drive.driver = mimic.driver;
-    }
-    if (drive.driver == j) continue;
-    const Joint& driver = robot.joints[drive.driver];
-    if (!hasOneCoordinate(driven) || !hasOneCoordinate(driver))
-      throw ModelError(subject + " mimics joint " + quoted(driver.name) +
-                           ": both must be revolute, continuous or prismatic",
-                       driven.place);
+  const Joint& driven = robot.joints[j];
+  const auto refuse = [&](const std::string& what) {
+    report.error(Fault::mimic, "joint " + quoted(driven.name) + what, driven.place);
+    return std::nullopt;
+  };
+  Drive drive{.driver = j};
+  for (int links = 0; robot.joints[drive.driver].mimic;) {
+    const description::Mimic& mimic = *robot.joints[drive.driver].mimic;
+    if (mimic.driver < 0 || mimic.driver >= joint_count)
+      return refuse(" mimics a joint that the robot does not have: name one of its joints");
+    if (!std::isfinite(mimic.multiplier) || !std::isfinite(mimic.offset))
+      return refuse(": the multiplier and offset of its mimic must be finite numbers");
+    if (++links > joint_count)
+      return refuse(" mimics itself, directly or through others: one of them must move freely");
+    drive.offset += drive.ratio * mimic.offset;
+    drive.ratio *= mimic.multiplier;
+    drive.driver = mimic.driver;
   }
+  const Joint& driver = robot.joints[drive.driver];
+  if (drive.driver != j && (!hasOneCoordinate(driven) || !hasOneCoordinate(driver)))
+    return refuse(" mimics joint " + quoted(driver.name) + ": both must be revolute, continuous or prismatic");
+  return drive;
+}
+
+std::vector<Drive> examineMimics(const Robot& robot, Report& report) {
+  std::vector<Drive> drives(robot.joints.size());
+  for (int j = 0; j < static_cast<int>(robot.joints.size()); ++j)
+    drives[j] = driveOf(robot, j, report).value_or(Drive{.driver = j});
+  return drives;
+}
+
+bool weighs(const Link& link) { return link.has_inertial && link.mass > 0; }
+
+enum class Moments { possible, not_positive, too_unequal };
+
+/// Ascending.
+Eigen::Vector3d principalMoments(const Eigen::Matrix3d& inertia) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Moments judge(const Eigen::Vector3d& moments) {
+  if (moments[0] <= definite_tolerance * moments[2]) return Moments::not_positive;
+  if (moments[2] > (moments[0] + moments[1]) * (1 + triangle_tolerance)) return Moments::too_unequal;
+  return Moments::possible;
+}
+
+/// False, and why in `report`, when dynamics cannot use the body.
+bool examineBody(const RigidBodyInertia& inertia, const Link& carrier, Report& report) {
+  const std::string subject = "link " + quoted(carrier.name);
+  if (!(inertia.mass > 0)) {
+    report.error(carrier.has_inertial ? Fault::no_mass : Fault::no_inertial,
+                 subject + " moves but has no mass: give it an <inertial> with mass and inertia, or join it by a fixed "
+                           "joint to a link that has them",
+                 carrier.place);
+    return false;
+  }
+  const Eigen::Vector3d moments = principalMoments(inertia.inertiaAboutCentreOfMass());
+  const std::string listed = "(principal moments about its centre of mass, with all that is fixed to it and its "
+                             "rotor: " +
+                             rounded(moments[0]) + ", " + rounded(moments[1]) + ", " + rounded(moments[2]) + " kg m²)";
+  const Moments judgement = judge(moments);
+  if (judgement == Moments::not_positive) {
+    report.error(Fault::inertia,
+                 subject + ": its inertia is not positive definite " + listed +
+                     ": all three principal moments must be greater than 0",
+                 carrier.place);
+  } else if (judgement == Moments::too_unequal) {
+    report.error(Fault::inertia,
+                 subject + ": no body can have its inertia " + listed +
+                     ": the greatest moment must not exceed the sum of the two others",
+                 carrier.place);
+  }
+  return judgement == Moments::possible;
+}
+
+/// That a body has no mass hinders dynamics alone.
+void warnOfNoMass(const RigidBodyInertia& inertia, const Link& carrier, Report& report) {
+  if (inertia.mass > 0) return;
+  const std::string subject = "link " + quoted(carrier.name);
+  if (carrier.has_inertial) {
+    report.warning(Fault::no_mass, subject + " has a mass that is not positive: the robot cannot be simulated",
+                   carrier.place);
+  } else {
+    report.warning(Fault::no_inertial,
+                   subject + " moves but has no <inertial>: the robot serves for kinematics only", carrier.place);
+  }
+}
+
+/// Bodies that move, each with the link that its joint carries; then tensors of links on their own.
+void examineMasses(const Robot& robot, MassPolicy policy, Report& report) {
+  const Model model(robot, MassPolicy::kinematics_only);
+  std::set<const Link*> refused;
+  for (const Model::Joint& joint : model.joints()) {
+    const RigidBodyInertia& inertia = model.bodies()[joint.first_body + joint.body_count - 1].inertia;
+    const Link& carrier = robot.links[robot.joints[robot.jointIndex(joint.name)].child];
+    if (policy == MassPolicy::kinematics_only) {
+      warnOfNoMass(inertia, carrier, report);
+    } else if (!examineBody(inertia, carrier, report)) {
+      refused.insert(&carrier);
+    }
+  }
+  for (const Link& link : robot.links) {
+    if (!weighs(link) || refused.contains(&link)) continue;
+    if (judge(principalMoments(link.inertia)) == Moments::possible) continue;
+    report.warning(Fault::inertia,
+                   "link " + quoted(link.name) +
+                       " has an inertia tensor that no rigid body has: its principal moments must be positive, and "
+                       "each at most the sum of the two others",
+                   link.place);
+  }
+}
+
+Eigen::Vector3d middle(const description::LinkShape& shape) {
+  if (const auto* capsule = std::get_if<description::CapsuleShape>(&shape)) return (capsule->from + capsule->to) / 2;
+  return std::get<description::BoxShape>(shape).pose.translation();
+}
+
+/// See validate().
+void warnOfForgottenCentres(const Robot& robot, Report& report) {
+  for (const Joint& joint : robot.joints) {
+    if (joint.type != JointType::revolute && joint.type != JointType::spherical) continue;
+    const Link& link = robot.links[joint.child];
+    if (!weighs(link) || !link.centre_of_mass.isZero(0)) continue;
+    const auto isBeside = [&](const Eigen::Vector3d& point) {
+      const double along = joint.type == JointType::revolute ? point.dot(joint.axis) : 0;
+      return (point - along * joint.axis).norm() > beside_axis;
+    };
+    const bool reaches_out =
+        std::ranges::any_of(link.shapes, [&](const auto& shape) { return isBeside(middle(shape)); }) ||
+        std::ranges::any_of(robot.joints, [&](const Joint& next) {
+          return next.parent == joint.child && next.type != JointType::fixed && isBeside(next.origin.translation());
+        });
+    if (!reaches_out) continue;
+    report.warning(Fault::centre_of_mass,
+                   "link " + quoted(link.name) +
+                       " has its centre of mass exactly at its joint, though it reaches out beside it: its weight "
+                       "gives no torque there; public models of hands often forget the <origin> of the <inertial>",
+                   link.place);
+  }
+}
+
+}  // namespace
+
+std::vector<RobotFinding> validate(const Robot& robot, MassPolicy policy) {
+  Report report;
+  examineStructure(robot, report);
+  examineNumbers(robot, report);
+  examineMimics(robot, report);
+  if (!report.hasErrors()) {                                       // else there is no tree of bodies to look at
+    examineMasses(robot, policy, report);
+    warnOfForgottenCentres(robot, report);
+  }
+  return report.take();
+}
+
+std::vector<int> checkStructure(const Robot& robot) {
+  Report report;
+  std::vector<int> order = examineStructure(robot, report);
+  report.throwFirst();
+  return order;
+}
+
+std::vector<Drive> resolveMimics(const Robot& robot) {
+  Report report;
+  std::vector<Drive> drives = examineMimics(robot, report);
+  report.throwFirst();
   return drives;
 }
 
 void checkNumbers(const Robot& robot) {
-  for (const Link& link : robot.links) checkLink(link);
-  for (const Joint& joint : robot.joints) checkJoint(joint);
+  Report report;
+  examineNumbers(robot, report);
+  report.throwFirst();
 }
 
 void checkBodyInertia(const RigidBodyInertia& inertia, const Link& carrier) {
-  const std::string subject = "link " + quoted(carrier.name);
-  if (!(inertia.mass > 0)) {
-    throw ModelError(subject + " moves but has no mass: give it an <inertial> with mass and inertia, or join it by a "
-                               "fixed joint to a link that has them",
-                     carrier.place);
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia.inertiaAboutCentreOfMass(),
-                                                             Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d& moments = solver.eigenvalues();           // ascending
-  const std::string listed = "(principal moments about its centre of mass, with all that is fixed to it and its "
-                             "rotor: " +
-                             rounded(moments[0]) + ", " + rounded(moments[1]) + ", " + rounded(moments[2]) + " kg m²)";
-  if (moments[0] <= definite_tolerance * moments[2]) {
-    throw ModelError(subject + ": its inertia is not positive definite " + listed +
-                         ": all three principal moments must be greater than 0",
-                     carrier.place);
-  }
-  if (moments[2] > (moments[0] + moments[1]) * (1 + triangle_tolerance)) {
-    throw ModelError(subject + ": no body can have its inertia " + listed +
-                         ": the greatest moment must not exceed the sum of the two others",
-                     carrier.place);
-  }
+  Report report;
+  examineBody(inertia, carrier, report);
+  report.throwFirst();
 }
 
 }  // namespace tactus::dynamics

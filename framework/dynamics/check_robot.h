@@ -1,12 +1,46 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "framework/description/robot.h"
+#include "framework/dynamics/model.h"
 #include "framework/dynamics/spatial.h"
 
-/// What a description must keep to become a Model.  Each check throws ModelError at the place of the fault.
+/// What a description must keep to become a Model.
 namespace tactus::dynamics {
+
+/// What a finding is about.
+enum class Fault {
+  structure,                                                       ///< no tree: names given twice, loops, several roots
+  number,                                                          ///< not finite, or out of its quantity's range
+  mimic,                                                           ///< a joint follows what it cannot
+  no_inertial,                                                     ///< a moving body of links that give no mass
+  no_mass,                                                         ///< a moving body whose mass is given, and is 0
+  inertia,                                                         ///< principal moments that no rigid body has
+  centre_of_mass                                                   ///< was probably forgotten
+};
+
+struct RobotFinding {
+  enum class Severity { error, warning };
+  Severity severity = Severity::error;
+  Fault fault = Fault::structure;
+  std::string message;
+  description::Place place;                                        ///< of the link or joint at fault
+};
+
+/// All that can be found wrong at once.  Without errors Model takes the robot under the same policy; with errors it
+/// throws the first one.  Masses that only dynamics need are warnings under MassPolicy::kinematics_only.  Always a
+/// warning: the tensor of a single link that no body has, though the body of which it is a part may be sound, and
+/// a centre of mass that was probably forgotten.
+///
+/// A forgotten centre of mass stands exactly at the origin of a link that has mass and that a revolute or spherical
+/// joint carries, while the middle of one of its shapes, or the origin of a joint on it that moves, lies more than 1 mm
+/// beside the axis (of a ball: from its centre).  A link that reaches along its axis only, e.g. a flange, may well turn
+/// about its centre of mass.
+std::vector<RobotFinding> validate(const description::Robot& robot, MassPolicy policy = MassPolicy::required);
+
+// The steps by which Model is built.  Each throws its first error as ModelError at the place of the fault.
 
 /// One tree that hangs at robot.root, unique names.  Returns all joints, fixed ones too, parents first, the moving
 /// ones in the order of q.

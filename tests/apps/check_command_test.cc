@@ -74,6 +74,22 @@ TEST(CheckCommand, MissingModelIsAnInvalidStack) {
   EXPECT_THAT(outcome.err, HasSubstr("toe.urdf"));
 }
 
+TEST(CheckCommand, ARobotWithACoupledJointIsAnInvalidStack) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "press", "press");
+  std::string robot = contentOf(folder.file("finger.urdf"));
+  const std::string driven = "<parent link=\"proximal\"/>";
+  robot.insert(robot.find(driven), "<mimic joint=\"hip\"/>");
+  folder.write("finger.urdf", robot);
+  for (const char* command : {"check", "run"}) {
+    const Outcome outcome = tactus({command, stack});
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_THAT(outcome.err, HasSubstr("finger.urdf:21:3: error[E054]: joint 'knee' follows joint 'hip': a stack runs "
+                                       "robots whose joints are revolute, continuous, prismatic or fixed and move on "
+                                       "their own\n"));
+  }
+}
+
 TEST(CheckCommand, MissingPluginIsExitFour) {
   const TemporaryFolder folder;
   const Outcome outcome =

@@ -48,6 +48,143 @@ TEST(DynamicsCommand, PendulumByHand) {
   EXPECT_NEAR(tip["jacobian"][2][0].get<double>(), std::sin(q), 1e-12);
   EXPECT_NEAR(tip["jacobian"][4][0].get<double>(), 1, 1e-12);
   EXPECT_EQ(json["frames"].size(), 3u);
+  EXPECT_EQ(json["positions"], nlohmann::json({"hinge"}));
+  EXPECT_EQ(json["dof"], 1);
+  EXPECT_EQ(json["mass"], 2);
+  EXPECT_NEAR(json["centre_of_mass"][0].get<double>(), -0.5 * std::sin(q), 1e-12);
+  EXPECT_NEAR(json["centre_of_mass"][1].get<double>(), 0, 1e-12);
+  EXPECT_NEAR(json["centre_of_mass"][2].get<double>(), 1 - 0.5 * std::cos(q), 1e-12);
+  EXPECT_NEAR(json["kinetic_energy"].get<double>(), 0.5 * inertia * 4, 1e-12);
+  EXPECT_NEAR(json["potential_energy"].get<double>(), 2 * 9.81 * (1 - 0.5 * std::cos(q)), 1e-12);
+}
+
+/// A pendulum with a second one beside it that turns twice as far, from another start.
+TEST(DynamicsCommand, CoupledPendulumsByHand) {
+  const TemporaryFolder folder;
+  std::string robot = pendulum;
+  robot.insert(robot.find("  <link name=\"tip\"/>"), R"(  <joint name="other" type="continuous">
+    <parent link="base"/><child link="echo"/><axis xyz="0 1 0"/><mimic joint="hinge" multiplier="2" offset="0.1"/>
+  </joint>
+  <link name="echo">
+    <inertial><origin xyz="0 0 -0.2"/><mass value="3"/>
+      <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial>
+  </link>
+)");
+  const double q = 0.3, inertia = 2 * 0.25 + 0.01 + 4 * (3 * 0.04 + 0.02);
+  const double gravity = 9.81 * (2 * 0.5 * std::sin(q) + 2 * 3 * 0.2 * std::sin(2 * q + 0.1));
+  const Outcome outcome = tactus(
+      {"dynamics", folder.write("p.urdf", robot), "--q", "0.3", "--qd", "-2", "--qdd", "4", "--tau", "1", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["joints"], nlohmann::json({"hinge"}));
+  EXPECT_NEAR(json["mass_matrix"][0][0].get<double>(), inertia, 1e-12);
+  EXPECT_NEAR(json["bias"][0].get<double>(), gravity, 1e-12);
+  EXPECT_NEAR(json["inverse_dynamics"][0].get<double>(), inertia * 4 + gravity, 1e-12);
+  EXPECT_NEAR(json["forward_dynamics"][0].get<double>(), (1 - gravity) / inertia, 1e-10);
+  EXPECT_NEAR(json["kinetic_energy"].get<double>(), 0.5 * inertia * 4, 1e-12);
+  EXPECT_NEAR(json["frames"]["echo"]["jacobian"][4][0].get<double>(), 2, 1e-12);
+}
+
+constexpr const char* brick = R"(<robot name="brick">
+  <link name="body">
+    <inertial><origin xyz="0 0.5 0"/><mass value="2"/>
+      <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.25"/></inertial>
+  </link>
+</robot>
+)";
+
+TEST(DynamicsCommand, AFloatingBaseFalls) {
+  const TemporaryFolder folder;
+  // A quarter turn about z, written with few digits; then 3 m/s along the world's x and 4 rad/s about the brick's z.
+  const Outcome outcome =
+      tactus({"dynamics", folder.write("brick.urdf", brick), "--floating-base", "--q", "1,2,3,0.7071,0,0,0.7071",
+              "--qd", "3,0,0,0,0,4", "--tau", "0,0,0,0,0,0", "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["joints"], nlohmann::json({"floating_base.x", "floating_base.y", "floating_base.z", "floating_base.wx",
+                                            "floating_base.wy", "floating_base.wz"}));
+  EXPECT_EQ(json["positions"],
+            nlohmann::json({"floating_base.x", "floating_base.y", "floating_base.z", "floating_base.qw",
+                            "floating_base.qx", "floating_base.qy", "floating_base.qz"}));
+  EXPECT_EQ(json["dof"], 6);
+  EXPECT_EQ(json["mass"], 2);
+  const double centre[] = {1 - 0.5, 2, 3};                         // 0.5 along the brick's y, which is −x
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(json["centre_of_mass"][i].get<double>(), centre[i], 1e-12);
+  // The centre moves with (3, 0, 0) + ω × (−0.5, 0, 0) = (3, −2, 0).
+  EXPECT_NEAR(json["kinetic_energy"].get<double>(), 0.5 * 2 * (9 + 4) + 0.5 * 0.25 * 16, 1e-12);
+  EXPECT_NEAR(json["potential_energy"].get<double>(), 2 * 9.81 * 3, 1e-12);
+  // The centre falls; the origin moves on a circle about it: a = g + ω²·0.5 towards the centre.
+  const double acceleration[] = {-8, 0, -9.81, 0, 0, 0};
+  for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(json["forward_dynamics"][i].get<double>(), acceleration[i], 1e-9) << i;
+}
+
+TEST(DynamicsCommand, EveryTypeOfJoint) {
+  const TemporaryFolder folder;
+  std::string robot = R"(<robot name="all"><link name="l0"/>)";
+  const char* types[] = {"planar", "spherical", "floating", "prismatic"};
+  for (size_t i = 0; i < 4; ++i) {
+    const std::string above = std::to_string(i), below = std::to_string(i + 1);
+    robot += std::string("<joint name=\"") + types[i] + "\" type=\"" + types[i] + "\"><parent link=\"l" + above +
+             "\"/><child link=\"l" + below + "\"/>" + (i == 3 ? "<limit effort=\"1\" velocity=\"1\"/>" : "") +
+             "</joint><link name=\"l" + below +
+             "\"><inertial><origin xyz=\"0.1 0.2 0.3\"/><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+             "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>";
+  }
+  const std::string file = folder.write("all.urdf", robot + "</robot>");
+  const std::string q = "0.1,0.2,0.3,0.5,0.5,-0.5,0.5,1,2,3,0,0.6,0,0.8,0.4", qd = "1,2,3,4,5,6,7,8,9,1,2,3,4",
+                    qdd = "1,-2,3,-4,5,-6,7,-8,9,-1,2,-3,4";
+  const Outcome there = tactus({"dynamics", file, "--q", q, "--qd", qd, "--qdd", qdd, "--json"});
+  ASSERT_EQ(there.exit_code, 0) << there.err;
+  std::string tau;
+  const nlohmann::json torques = there.json()["inverse_dynamics"];
+  for (const nlohmann::json& torque : torques) tau += (tau.empty() ? "" : ",") + torque.dump();
+  const nlohmann::json back = tactus({"dynamics", file, "--q", q, "--qd", qd, "--tau", tau, "--json"}).json();
+  EXPECT_EQ(back["dof"], 13);
+  EXPECT_EQ(back["positions"].size(), 15u);
+  const double expected[] = {1, -2, 3, -4, 5, -6, 7, -8, 9, -1, 2, -3, 4};
+  for (size_t i = 0; i < 13; ++i) EXPECT_NEAR(back["forward_dynamics"][i].get<double>(), expected[i], 1e-8) << i;
+
+  const Outcome rates = tactus({"dynamics", file, "--q", qd, "--json"});
+  EXPECT_EQ(rates.exit_code, 2);
+  EXPECT_THAT(rates.err, HasSubstr("--q has 13 numbers, but the robot has 15 positions: planar.x, planar.y, "
+                                   "planar.angle, spherical.qw, spherical.qx, spherical.qy, spherical.qz, floating.x, "
+                                   "floating.y, floating.z, floating.qw, floating.qx, floating.qy, floating.qz, "
+                                   "prismatic"));
+  const Outcome positions = tactus({"dynamics", file, "--q", q, "--qd", q, "--json"});
+  EXPECT_EQ(positions.exit_code, 2);
+  EXPECT_THAT(positions.err, HasSubstr("--qd has 15 numbers, but the robot has 13 degrees of freedom: planar.x, "
+                                       "planar.y, planar.angle, spherical.wx, spherical.wy, spherical.wz, floating.x, "
+                                       "floating.y, floating.z, floating.wx, floating.wy, floating.wz, prismatic"));
+}
+
+TEST(DynamicsCommand, AQuaternionThatIsNone) {
+  const TemporaryFolder folder;
+  const Outcome outcome = tactus(
+      {"dynamics", folder.write("brick.urdf", brick), "--floating-base", "--q", "1,2,3,0.5,0,0,0", "--json"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("--q: the quaternion w,x,y,z of joint 'floating_base' has length 0.5, expected 1"));
+}
+
+TEST(DynamicsCommand, AFloatingBaseNeedsItsNames) {
+  const TemporaryFolder folder;
+  std::string robot = brick;
+  robot.replace(robot.find("\"body\""), 6, "\"world\"");
+  const Outcome outcome = tactus(
+      {"dynamics", folder.write("brick.urdf", robot), "--floating-base", "--q", "1,2,3,1,0,0,0", "--json"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--floating-base adds a link 'world' and a joint 'floating_base', but the robot "
+                                     "has one of that name already: give it another one"));
+}
+
+TEST(DynamicsCommand, ABaseWithoutMassFloatsInKinematicsAlone) {
+  const TemporaryFolder folder;
+  const Outcome outcome = tactus(
+      {"dynamics", folder.write("p.urdf", pendulum), "--floating-base", "--q", "1,2,3,1,0,0,0,0", "--json"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("link 'base' moves but has no mass"));
+  EXPECT_FALSE(outcome.json().contains("mass"));
+  EXPECT_EQ(outcome.json()["frames"]["tip"]["position"], nlohmann::json({1.0, 2.0, 3.0}));
 }
 
 TEST(DynamicsCommand, WithoutGravity) {

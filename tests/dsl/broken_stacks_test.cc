@@ -65,10 +65,18 @@ INSTANTIATE_TEST_SUITE_P(
                  "augmented"},
         Expected{"bad_number.xml", "E014", 11, 55,
                  "attribute 'force': '0.5N' is not a number: expected a number ≥ 0 (N)"},
+        Expected{"ball_joint.xml", "E054", 3, 3,
+                 "joint 'shoulder' has several degrees of freedom: a stack runs robots whose joints are revolute, "
+                 "continuous, prismatic or fixed and move on their own",
+                 "", "ball.urdf"},
         Expected{"broken_robot.xml", "E081", 3, 3, "link 'two' has no parent, but 'one' is the root already", "",
                  "two_roots.urdf"},
         Expected{"carrier_cycle.xml", "E039", 6, 29, "object 'bump' stands on itself, directly or through others"},
         Expected{"class_cycle.xml", "E039", 3, 32, "class 'soft' is its own base, directly or through others"},
+        Expected{"coupled_robot.xml", "E054", 10, 3,
+                 "joint 'elbow' follows joint 'shoulder': a stack runs robots whose joints are revolute, continuous, "
+                 "prismatic or fixed and move on their own; 1 more of this one are not like that",
+                 "", "coupled.urdf"},
         Expected{"duplicate_attribute.xml", "E003", 11, 32, "attribute 'name' is given twice"},
         Expected{"duplicate_name.xml", "E020", 15, 20, "the name 'hand' is taken by the <impedance> in line 14"},
         Expected{"empty.xml", "E002", 1, 1, "the file holds no element"},
@@ -160,6 +168,15 @@ TEST(BrokenStacks, AnErrorShowsItsLineItsNearestNameAndItsPath) {
             "  14 |     <impedance name=\"hand\" frame=\"palm\" stifness=\"300 300 300\"/>\n"
             "     |                                         ^^^^^^^^ did you mean 'stiffness'?\n"
             "  in /stack/level[@priority=2]/impedance[@name=hand]\n");
+}
+
+TEST(BrokenStacks, ARobotThatStacksCannotRunIsShownAtItsJoint) {
+  EXPECT_EQ(dsl::render(diagnose(folder + "ball_joint.xml").front()),
+            folder + "ball.urdf:3:3: error[E054]: joint 'shoulder' has several degrees of freedom: a stack runs robots "
+            "whose joints are revolute, continuous, prismatic or fixed and move on their own\n"
+            "  3 |   <joint name=\"shoulder\" type=\"spherical\">\n"
+            "    |   ^^^^^^\n"
+            "  in /robot/joint[@name=shoulder], included from " + folder + "ball_joint.xml:3:3\n");
 }
 
 TEST(BrokenStacks, AnErrorInAnIncludedFileSaysWhoIncludedIt) {

@@ -144,19 +144,21 @@ TEST(Mutants, OfAStackThatIsValidCompileOrAreRefused) {
 
 TEST(Mutants, OfRobotsAreReadOrRefusedAtAPlace) {
   Mutator mutate(22);
-  const std::string original = contentOf(std::string(TACTUS_SOURCE_DIR) + "/models/lwr_4plus.urdf");
-  int refused = 0;
-  for (int i = 0; i < 400; ++i) {
-    const std::string mutant = mutate(original);
-    std::vector<dsl::Diagnostic> warnings;
-    try {
-      dsl::readRobot(writeFile("mutant.urdf", mutant), warnings);
-    } catch (const dsl::InvalidStack& invalid) {
-      ++refused;
-      expectPlaced(invalid, mutant);
+  for (const char* file : {"/models/lwr_4plus.urdf", "/tests/dsl/broken/coupled.urdf", "/tests/dsl/broken/ball.urdf"}) {
+    const std::string original = contentOf(std::string(TACTUS_SOURCE_DIR) + file);
+    int refused = 0;
+    for (int i = 0; i < 400; ++i) {
+      const std::string mutant = mutate(original);
+      std::vector<dsl::Diagnostic> warnings;
+      try {
+        dsl::readRobot(writeFile("mutant.urdf", mutant), warnings);
+      } catch (const dsl::InvalidStack& invalid) {
+        ++refused;
+        expectPlaced(invalid, mutant);
+      }
     }
+    EXPECT_GT(refused, 100) << file;
   }
-  EXPECT_GT(refused, 100);
 }
 
 }  // namespace

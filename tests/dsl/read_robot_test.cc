@@ -373,20 +373,137 @@ TEST(ReadRobot, TheTree) {
 }
 
 TEST(ReadRobot, JointTypesAndLimits) {
-  EXPECT_THAT(findings(changed("revolute", "floating")),
-              ElementsAre("7:25 E083 joints of type 'floating' are not supported: expected revolute, continuous, "
-                          "prismatic or fixed"));
   EXPECT_THAT(findings(changed("revolute", "revolut")),
               ElementsAre("7:25 E083 joints of type 'revolut' are not supported: expected revolute, continuous, "
-                          "prismatic or fixed [revolute]"));
-  EXPECT_THAT(findings(changed("<dynamics", "<mimic joint=\"j\"/><dynamics")),
-              ElementsAre("11:5 E083 joints that mimic others are not supported yet"));
+                          "prismatic, fixed, planar, spherical or floating [revolute]"));
   EXPECT_THAT(findings(changed("lower=\"-1\"", "lower=\"2\"")),
               ElementsAre("10:19 E084 the lower limit 2 lies above the upper limit 1"));
   EXPECT_THAT(findings(changed("<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>", "")),
               ElementsAre("7:3 E016 <joint> needs a <limit>"));
   EXPECT_THAT(findings(changed(" effort=\"10\"", "")), ElementsAre("10:5 E013 <limit> needs the attribute 'effort'"));
   EXPECT_THAT(findings(changed("xyz=\"0 0 2\"", "xyz=\"0 0 0\"")), ElementsAre("9:49 E014 an axis must not be zero"));
+}
+
+/// `good` with a joint of several degrees of freedom, and nothing that means nothing to it.
+std::string freer(const std::string& type) {
+  std::string text = changed("revolute", type);
+  const std::size_t limit = text.find("<limit"), end = text.find("  </joint>");
+  text.erase(limit, end - limit);
+  if (type == "planar") return text;
+  return text.erase(text.find("<axis"), std::string("<axis xyz=\"0 0 2\"/>").size());
+}
+
+TEST(ReadRobot, JointsOfSeveralDegreesOfFreedom) {
+  for (const auto& [word, type] : {std::pair{"planar", description::JointType::planar},
+                                   {"spherical", description::JointType::spherical},
+                                   {"floating", description::JointType::floating}}) {
+    const Robot robot = readCleanly(writeFile(std::string(word) + ".urdf", freer(word)));
+    EXPECT_EQ(joint(robot, "j").type, type);
+    EXPECT_EQ(joint(robot, "j").origin.translation(), Eigen::Vector3d(0, 0, 1));
+    EXPECT_EQ(joint(robot, "j").axis, Eigen::Vector3d::UnitZ());
+    EXPECT_EQ(joint(robot, "j").place.line, 7);
+    EXPECT_EQ(dynamics::Model(robot).dof(), description::velocityCount(type));
+  }
+}
+
+TEST(ReadRobot, HoweverTheWordSphericalIsWritten) {
+  for (const char* word : {"'spherical'", "\"spheric&#97;l\"", "\n 'spherical' "}) {
+    std::string text = freer("spherical");
+    const std::string plain = "\"spherical\"";
+    text.replace(text.find(plain), plain.size(), word);
+    EXPECT_EQ(joint(readCleanly(writeFile("robot.urdf", text)), "j").type, description::JointType::spherical) << word;
+  }
+}
+
+TEST(ReadRobot, WhatMeansNothingToAJointIsPassedOverWithAWarning) {
+  std::string text = freer("spherical");
+  text.insert(text.find("  </joint>"),
+              "    <limit effort=\"much\"/><axis xyz=\"1 0\"/><safety_controller/><calibration/>\n    <dynamics/>\n");
+  EXPECT_THAT(findings(text), ElementsAre("10:9 W006 joint 'j' is spherical: its <limit> is passed over",
+                                          "10:31 W006 joint 'j' is spherical: its <axis> is passed over",
+                                          "10:48 W006 joint 'j' is spherical: its <safety_controller> is passed over",
+                                          "10:68 W006 joint 'j' is spherical: its <calibration> is passed over",
+                                          "11:5 W006 joint 'j' is spherical: its <dynamics> is passed over"));
+  text = freer("planar");
+  text.insert(text.find("  </joint>"), "    <limit effort=\"1\" velocity=\"1\"/>\n");
+  EXPECT_THAT(findings(text), ElementsAre("10:9 W006 joint 'j' is planar: its <limit> is passed over"));
+  text = freer("planar");
+  text.replace(text.find("0 0 2"), 5, "0 0 0");
+  EXPECT_THAT(findings(text), ElementsAre("9:49 E014 an axis must not be zero"));
+  text = freer("floating");
+  text.insert(text.find("  </joint>"), "    <rotor inertia=\"0.1\"/>\n");
+  EXPECT_THAT(findings(text), ElementsAre("10:9 E015 joint 'j' has several degrees of freedom: which one its rotor "
+                                          "turns with is not said, leave it out"));
+}
+
+TEST(ReadRobot, AGearRatio) {
+  const auto geared = [](const std::string& ratio) {
+    return changed("rotor inertia=\"0.01\"", "rotor inertia=\"0.01\" gear-ratio=\"" + ratio + "\"");
+  };
+  const Robot robot = readCleanly(writeFile("robot.urdf", geared("-20")));
+  EXPECT_EQ(joint(robot, "j").gear_ratio, -20);
+  EXPECT_DOUBLE_EQ(joint(robot, "j").reflectedInertia(), 4);
+  EXPECT_EQ(joint(readCleanly(writeFile("robot.urdf", good)), "j").gear_ratio, 1);
+  EXPECT_THAT(findings(geared("0")), ElementsAre("11:64 E014 a gear ratio must not be zero"));
+  EXPECT_THAT(findings(geared("1:20")),
+              ElementsAre("11:64 E014 attribute 'gear-ratio': '1:20' is not a number: expected a number"));
+  EXPECT_THAT(findings(changed("rotor inertia=\"0.01\"", "rotor inertia=\"0.01\" gear_ratio=\"2\"")),
+              ElementsAre("11:52 E012 <rotor> has no attribute 'gear_ratio' [gear-ratio]"));
+}
+
+/// `good` with a second arm on the first, whose joint "k" is of this type and follows as `mimic` says.
+std::string following(const std::string& mimic, const std::string& type = "continuous") {
+  const std::string second =
+      "  <link name=\"hand\"><inertial><origin xyz=\"0 0 1\"/><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" "
+      "ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\n"
+      "  <joint name=\"k\" type=\"" + type + "\"><parent link=\"arm\"/><child link=\"hand\"/>\n" + mimic +
+      "\n  </joint>\n  <tactus>";
+  return changed("  <tactus>", second);
+}
+
+TEST(ReadRobot, AJointMayFollowAnother) {
+  const Robot robot = readCleanly(
+      writeFile("robot.urdf", following("<mimic joint=\"j\" multiplier=\"-0.5\" offset=\"0.25\"/>")));
+  ASSERT_TRUE(joint(robot, "k").mimic);
+  EXPECT_EQ(joint(robot, "k").mimic->driver, robot.jointIndex("j"));
+  EXPECT_EQ(joint(robot, "k").mimic->multiplier, -0.5);
+  EXPECT_EQ(joint(robot, "k").mimic->offset, 0.25);
+  EXPECT_FALSE(joint(robot, "j").mimic);
+  EXPECT_THAT(movingJoints(robot), ElementsAre("j"));
+  const Robot plain = readCleanly(writeFile("robot.urdf", following("<mimic joint=\"j\"/>")));
+  EXPECT_EQ(joint(plain, "k").mimic->multiplier, 1);
+  EXPECT_EQ(joint(plain, "k").mimic->offset, 0);
+}
+
+TEST(ReadRobot, WhatCannotFollowOrBeFollowed) {
+  EXPECT_THAT(findings(following("<mimic joint=\"jj\"/>")),
+              ElementsAre("15:15 E031 the robot has no joint 'jj' [j]"));
+  EXPECT_THAT(findings(following("<mimic/>")), ElementsAre("15:1 E013 <mimic> needs the attribute 'joint'"));
+  EXPECT_THAT(findings(following("<mimic joint=\"j\" multiplyer=\"2\"/>")),
+              ElementsAre("15:18 E012 <mimic> has no attribute 'multiplyer' [multiplier]"));
+  EXPECT_THAT(findings(following("<mimic joint=\"j\" multiplier=\"two\" offset=\"inf\"/>")),
+              ElementsAre("15:30 E014 attribute 'multiplier': 'two' is not a number: expected a number",
+                          "15:43 E014 attribute 'offset': 'inf' is not a finite number: expected a number"));
+  const std::string itself =
+      "E086 joint 'k' follows itself, directly or through others: one of them must move freely";
+  EXPECT_THAT(findings(following("<mimic joint=\"k\"/>")), ElementsAre("15:15 " + itself));
+  std::string circle = following("<mimic joint=\"j\"/>");
+  circle.replace(circle.find("<dynamics"), 0, "<mimic joint=\"k\"/>");
+  EXPECT_THAT(findings(circle),
+              ElementsAre("11:19 E086 joint 'j' follows itself, directly or through others: one of them must move "
+                          "freely",
+                          "15:15 " + itself));
+  for (const std::string type : {"fixed", "planar", "spherical", "floating"})
+    EXPECT_THAT(findings(following("<mimic joint=\"j\"/>", type)),
+                ElementsAre("15:1 E086 joint 'k' is " + type +
+                            ": only one that is revolute, continuous or prismatic follows another"));
+  for (const std::string type : {"fixed", "planar"}) {
+    std::string text = following("<mimic joint=\"j\"/>");
+    text.replace(text.find("revolute"), 8, type);
+    EXPECT_THAT(findings(text), testing::Contains("15:15 E086 joint 'j' is " + type +
+                                                  ": only one that is revolute, continuous or prismatic can be "
+                                                  "followed"));
+  }
 }
 
 TEST(ReadRobot, AContinuousJointHasNoLimits) {
@@ -439,6 +556,26 @@ TEST(ReadRobot, WhatMakesItUnfitForDynamicsIsAWarning) {
                           "<collision> to round its ends"));
   EXPECT_THAT(findings(changed("length=\"0.2\"/></geometry>", "length=\"0.2\"/></geometry><capsule/>")),
               ElementsAre("5:73 E015 <capsule/> rounds the ends of a <cylinder>, not of a <capsule>"));
+}
+
+TEST(ReadRobot, WhatNoRobotCanBe) {
+  EXPECT_THAT(findings(changed("mass value=\"1\"", "mass value=\"-1\"")),
+              ElementsAre("3:3 E087 link 'arm': its mass is -1 kg; a mass cannot be negative"));
+}
+
+TEST(ReadRobot, AForgottenCentreOfMass) {
+  EXPECT_THAT(findings(changed("<collision>", "<collision><origin xyz=\"0.1 0 0\"/>")),
+              ElementsAre("3:3 W007 link 'arm' has its centre of mass exactly at its joint, though it reaches out "
+                          "beside it: its weight gives no torque there; public models of hands often forget the "
+                          "<origin> of the <inertial>"));
+}
+
+TEST(ReadRobot, EveryLinkUnfitForDynamicsIsToldAtItsPlace) {
+  std::string text = following("");
+  text.replace(text.find("mass value=\"1\""), 14, "mass value=\"0\"");
+  text.replace(text.rfind("izz=\"1\""), 7, "izz=\"9\"");
+  EXPECT_THAT(findings(text), ElementsAre(testing::StartsWith("3:3 W002 link 'arm'"),
+                                          testing::StartsWith("13:3 W003 link 'hand'")));
 }
 
 TEST(ReadRobot, ACylinderWithRoundEndsIsACapsule) {

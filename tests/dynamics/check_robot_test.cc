@@ -1,7 +1,9 @@
 #include "framework/dynamics/check_robot.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "framework/dynamics/model.h"
@@ -13,6 +15,8 @@ namespace {
 
 using description::JointType;
 using description::Robot;
+using testing::ElementsAre;
+using testing::IsEmpty;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -48,9 +52,27 @@ void expectError(const std::function<void(Robot&)>& damage, const std::string& m
     EXPECT_EQ(error.place.line, line);
     EXPECT_EQ(error.place.file, line > 0 ? "robot.urdf" : "");
   }
+  const std::vector<RobotFinding> all = validate(robot, policy);
+  const auto first = std::ranges::find(all, RobotFinding::Severity::error, &RobotFinding::severity);
+  ASSERT_NE(first, all.end());
+  EXPECT_EQ(first->message, message);                              // what Model throws is what validate finds first
+  EXPECT_EQ(first->place.line, line);
 }
 
-TEST(CheckRobot, ASoundRobotPasses) { EXPECT_EQ(Model(soundRobot()).dof(), 2); }
+/// "error 21 message" of every finding.
+std::vector<std::string> findings(const Robot& robot, MassPolicy policy = MassPolicy::required) {
+  std::vector<std::string> lines;
+  for (const RobotFinding& one : validate(robot, policy))
+    lines.push_back(std::string(one.severity == RobotFinding::Severity::error ? "error " : "warning ") +
+                    std::to_string(one.place.line) + " " + one.message);
+  return lines;
+}
+
+TEST(CheckRobot, ASoundRobotPasses) {
+  EXPECT_EQ(Model(soundRobot()).dof(), 2);
+  EXPECT_THAT(findings(soundRobot()), IsEmpty());
+  EXPECT_THAT(findings(soundRobot(), MassPolicy::kinematics_only), IsEmpty());
+}
 
 TEST(CheckRobot, MovingBodyWithoutMass) {
   const auto weightless = [](Robot& robot) {
@@ -168,6 +190,124 @@ TEST(CheckRobot, BodyInertia) {
               "is fixed to it and its rotor: 0.02, 0.02, 0.05 kg m²): the greatest moment must not exceed the sum of "
               "the two others",
               11);
+}
+
+TEST(CheckRobot, Mimics) {
+  const auto follow = [](int driver, double multiplier = 2) {
+    return [=](Robot& robot) { robot.joints[1].mimic = description::Mimic{driver, multiplier, 0}; };
+  };
+  expectError(follow(17), "joint 'elbow' mimics a joint that the robot does not have: name one of its joints", 21);
+  expectError(follow(0, nan), "joint 'elbow': the multiplier and offset of its mimic must be finite numbers", 21);
+  expectError(follow(1), "joint 'elbow' mimics itself, directly or through others: one of them must move freely", 21);
+  expectError(follow(2), "joint 'elbow' mimics joint 'wrist': both must be revolute, continuous or prismatic", 21);
+}
+
+TEST(CheckRobot, RotorsAndGears) {
+  expectError([](Robot& robot) { robot.joints[0].gear_ratio = 0; },
+              "joint 'shoulder': its gear ratio is 0; it must be a number other than 0", 20);
+  expectError(
+      [](Robot& robot) {
+        robot.joints[0].type = JointType::spherical;
+        robot.joints[0].rotor_inertia = 0.01;
+      },
+      "joint 'shoulder' has several degrees of freedom: which one its rotor turns with is not said, leave it out", 20);
+}
+
+TEST(CheckRobot, EveryFaultIsFoundAtOnce) {
+  Robot robot = soundRobot();
+  robot.links[3].name = "upper";
+  robot.links[2].mass = -1;
+  robot.links[2].centre_of_mass.x() = nan;
+  robot.joints[0].lower = 2;
+  robot.joints[0].upper = 1;
+  robot.joints[0].damping = -1;
+  robot.joints[1].mimic = description::Mimic{1, 1, 0};
+  EXPECT_THAT(findings(robot),
+              ElementsAre("error 13 two links are named 'upper' (line 11): give one of them another name",
+                          "error 12 link 'lower': its mass is -1 kg; a mass cannot be negative",
+                          "error 12 link 'lower': its centre of mass is not made of finite numbers",
+                          "error 20 joint 'shoulder': its lower limit 2 lies above its upper limit 1",
+                          "error 20 joint 'shoulder': its damping is -1; it must be a number of at least 0",
+                          "error 21 joint 'elbow' mimics itself, directly or through others: one of them must move "
+                          "freely"));
+}
+
+TEST(CheckRobot, EveryRootAndEveryLinkInALoopIsFound) {
+  Robot robot = soundRobot();
+  robot.joints.erase(robot.joints.begin() + 1, robot.joints.end());
+  EXPECT_THAT(findings(robot),
+              ElementsAre("error 12 the robot has two roots, 'base' and 'lower': join the second one to the tree",
+                          "error 13 the robot has two roots, 'base' and 'hand': join the second one to the tree"));
+  robot = soundRobot();
+  robot.joints[0].parent = 2;                                      // upper and lower in a circle, hand below it
+  EXPECT_THAT(
+      findings(robot),
+      ElementsAre("error 11 link 'upper' hangs in a loop of joints that never reaches the base 'base': open the loop",
+                  "error 12 link 'lower' hangs in a loop of joints that never reaches the base 'base': open the loop",
+                  "error 13 link 'hand' hangs in a loop of joints that never reaches the base 'base': open the loop"));
+}
+
+TEST(CheckRobot, WhatOnlyDynamicsNeedIsAWarningForKinematics) {
+  Robot robot = soundRobot();
+  robot.links[1].mass = 0;
+  robot.links[2].has_inertial = robot.links[3].has_inertial = false;
+  EXPECT_THAT(findings(robot, MassPolicy::kinematics_only),
+              ElementsAre("warning 11 link 'upper' has a mass that is not positive: the robot cannot be simulated",
+                          "warning 12 link 'lower' moves but has no <inertial>: the robot serves for kinematics only"));
+  const std::string to_do = " moves but has no mass: give it an <inertial> with mass and inertia, or join it by a "
+                            "fixed joint to a link that has them";
+  EXPECT_THAT(findings(robot), ElementsAre("error 11 link 'upper'" + to_do, "error 12 link 'lower'" + to_do));
+}
+
+TEST(CheckRobot, ATensorOfOneLinkThatNoBodyHas) {
+  const std::string warning =
+      " has an inertia tensor that no rigid body has: its principal moments must be positive, and each at most the sum "
+      "of the two others";
+  Robot robot = soundRobot();
+  robot.links[3].inertia = Eigen::Vector3d(0.02, 0.02, 0.05).asDiagonal();  // with "lower", to which it is fixed, sound
+  EXPECT_THAT(findings(robot), ElementsAre("warning 13 link 'hand'" + warning));
+  EXPECT_EQ(Model(robot).dof(), 2);
+  robot.links[1].inertia = robot.links[3].inertia;                 // alone in its body
+  EXPECT_EQ(findings(robot).size(), 2u);
+  EXPECT_THAT(findings(robot, MassPolicy::kinematics_only),
+              ElementsAre("warning 11 link 'upper'" + warning, "warning 13 link 'hand'" + warning));
+}
+
+TEST(CheckRobot, AForgottenCentreOfMass) {
+  const auto expected = ElementsAre(
+      "warning 11 link 'upper' has its centre of mass exactly at its joint, though it reaches out beside it: its "
+      "weight gives no torque there; public models of hands often forget the <origin> of the <inertial>");
+  Robot robot = soundRobot();
+  robot.links[1].centre_of_mass.setZero();
+  EXPECT_THAT(findings(robot), IsEmpty());                         // the elbow stands on the shoulder's axis
+  robot.joints[1].origin.translation().x() = 0.1;
+  EXPECT_THAT(findings(robot), expected);
+  EXPECT_THAT(findings(robot, MassPolicy::kinematics_only), expected);
+  EXPECT_EQ(Model(robot).dof(), 2);
+
+  robot.links[1].centre_of_mass.x() = 1e-12;                       // not exactly: it was thought of
+  EXPECT_THAT(findings(robot), IsEmpty());
+  robot.links[1].centre_of_mass.setZero();
+  robot.joints[0].type = JointType::prismatic;                     // nothing turns
+  EXPECT_THAT(findings(robot), IsEmpty());
+  robot.joints[0].type = JointType::floating;                      // a base may have its origin where it likes
+  EXPECT_THAT(findings(robot), IsEmpty());
+
+  robot = soundRobot();
+  robot.links[1].centre_of_mass.setZero();
+  robot.joints[0].type = JointType::spherical;                     // no axis to reach along
+  EXPECT_THAT(findings(robot), expected);
+  robot.joints[0].type = JointType::revolute;
+  robot.links[1].shapes = {description::CapsuleShape{{0, 0, 0}, {0, 0, 0.2}, 0.05}};
+  EXPECT_THAT(findings(robot), IsEmpty());
+  robot.links[1].shapes.push_back(description::CapsuleShape{{0, 0, 0}, {0, 0.2, 0}, 0.05});
+  EXPECT_THAT(findings(robot), expected);
+  description::BoxShape box{.size = {0.1, 0.1, 0.1}};
+  robot.links[1].shapes = {box};
+  EXPECT_THAT(findings(robot), IsEmpty());
+  box.pose.translation().y() = 0.05;
+  robot.links[1].shapes = {box};
+  EXPECT_THAT(findings(robot), expected);
 }
 
 TEST(CheckRobot, AThinDiskIsTheLimit) {
