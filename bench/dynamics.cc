@@ -1,145 +1,108 @@
-#include <benchmark/benchmark.h>
+#include <CLI/CLI.hpp>
 
-#include <array>
+#include <cstdio>
+#include <iostream>
+#include <regex>
 
-#include "framework/dynamics/aba.h"
-#include "framework/dynamics/cholesky.h"
-#include "framework/dynamics/crba.h"
-#include "framework/dynamics/dynamics_cache.h"
-#include "framework/dynamics/rnea.h"
+#include "bench/peers/measure.h"
+#include "bench/peers/report.h"
 #include "tests/dynamics/robots.h"
 
-// Rigid-body dynamics of the arm with hand, 23 degrees of freedom.  64 random states are cycled, so that no branch and
-// no cache line is learnt by heart.  Points: four fingers, three links each.
-namespace tactus::dynamics {
+// Rigid-body dynamics against other engines, on the same robots, states and points, in one run.  docs/benchmarks.md
+// says what is timed and how to read the table.
+namespace tactus::bench {
 namespace {
 
-struct Setup {
-  static constexpr int states = 64;
+/// Engines that differ by more than this, relative to the largest number, did not compute the same thing.
+constexpr double agreement = 1e-6;
 
-  Setup() {
-    test_robots::Random random(1);
-    for (int k = 0; k < states; ++k) {
-      q.push_back(test_robots::uniformVector(random, model.dof(), 3));
-      qd.push_back(test_robots::uniformVector(random, model.dof(), 2));
-      qdd.push_back(test_robots::uniformVector(random, model.dof(), 5));
-      tau.push_back(test_robots::uniformVector(random, model.dof(), 5));
-    }
-    int count = 0;
-    for (const std::string finger : {"index_", "middle_", "ring_", "thumb_"}) {
-      for (const std::string link : {"1", "2", "tip"}) {
-        frames[count] = model.frameIndex(finger + link);
-        points_W[count++] = test_robots::uniformVector3(random, 1);
-      }
-    }
-  }
-  int next() { return state = (state + 1) % states; }
-
-  Model model{test_robots::lwrAllegro()};
-  Workspace workspace{model};
-  Eigen::Vector3d gravity_W{0, 0, -9.81};
-  std::vector<Eigen::VectorXd> q, qd, qdd, tau;
-  std::array<int, 12> frames;
-  std::array<Eigen::Vector3d, 12> points_W;
-  Eigen::VectorXd out{Eigen::VectorXd::Zero(model.dof())};
-  Eigen::MatrixXd M{Eigen::MatrixXd::Zero(model.dof(), model.dof())}, L{M}, J{Eigen::MatrixXd::Zero(36, model.dof())};
-  int state = 0;
+struct Options {
+  bool json = false, quick = false;
+  std::string filter;
 };
 
-void rneaOnly(benchmark::State& run) {
-  Setup s;
-  for (auto _ : run) {
-    const int k = s.next();
-    rnea(s.model, s.q[k], s.qd[k], s.qdd[k], s.gravity_W, s.workspace, s.out);
-    benchmark::DoNotOptimize(s.out.data());
-  }
-}
-BENCHMARK(rneaOnly)->Name("rnea");
+struct Case {
+  std::string name;
+  description::Robot robot;
+  std::vector<Operation> operations;
+};
 
-void biasOnly(benchmark::State& run) {
-  Setup s;
-  for (auto _ : run) {
-    const int k = s.next();
-    nonlinearEffects(s.model, s.q[k], s.qd[k], s.gravity_W, s.workspace, s.out);
-    benchmark::DoNotOptimize(s.out.data());
-  }
+std::vector<Case> cases() {
+  const std::vector<Operation> all = {Operation::rnea,            Operation::bias, Operation::mass_matrix,
+                                      Operation::forward_dynamics, Operation::point_jacobians, Operation::tick,
+                                      Operation::cache_tick};
+  return {{"lwr_allegro", test_robots::lwrAllegro(), all}, {"arm", test_robots::lwr(), all}};
 }
-BENCHMARK(biasOnly)->Name("bias");
 
-void crbaOnly(benchmark::State& run) {
-  Setup s;
-  for (auto _ : run) {
-    crba(s.model, s.q[s.next()], s.workspace, s.M);
-    benchmark::DoNotOptimize(s.M.data());
+void addFigures(const Case& c, const Problem& problem, Operation operation, const Effort& effort,
+                std::vector<Figure>& figures) {
+  const std::vector<std::unique_ptr<Engine>> engines = makeEngines(problem);
+  std::vector<Engine*> offering;
+  for (const auto& engine : engines)
+    if (engine->offers(operation)) offering.push_back(engine.get());
+  std::vector<double> differences;
+  for (Engine* engine : offering) differences.push_back(relativeDifference(*offering[0], *engine, operation));
+  const std::vector<Timing> timings = measure(offering, operation, effort);
+  std::optional<double> mujoco_us;
+  for (size_t k = 0; k < offering.size(); ++k)
+    if (offering[k]->name().starts_with("MuJoCo")) mujoco_us = timings[k].median_us;
+  for (size_t k = 0; k < offering.size(); ++k) {
+    Figure f{c.name, offering[k]->name(), operation, timings[k], differences[k], {}, {}};
+    if (mujoco_us) f.ratio = timings[k].median_us / *mujoco_us;
+    if (k == 0) f.target = targetRatio(c.name, operation);
+    figures.push_back(f);
   }
 }
-BENCHMARK(crbaOnly)->Name("crba");
 
-void abaOnly(benchmark::State& run) {
-  Setup s;
-  for (auto _ : run) {
-    const int k = s.next();
-    aba(s.model, s.q[k], s.qd[k], s.tau[k], s.gravity_W, s.workspace, s.out);
-    benchmark::DoNotOptimize(s.out.data());
+/// 1 when engines disagree, else 0.
+int report(const std::vector<Figure>& figures, const Options& options) {
+  if (options.json) {
+    printJson(figures);
+  } else {
+    printTable(figures);
+    printGrowth(figures);
   }
+  int status = 0;
+  for (const Figure& f : figures) {
+    if (f.difference <= agreement) continue;
+    std::fprintf(stderr, "bench_dynamics: %s: %s of %s differs from Tactus's by %.1e, more than %.0e\n",
+                 f.engine.c_str(), operationName(f.operation).c_str(), f.model.c_str(), f.difference, agreement);
+    status = 1;
+  }
+  return status;
 }
-BENCHMARK(abaOnly)->Name("aba");
 
-void kinematicsOnly(benchmark::State& run) {
-  Setup s;
-  for (auto _ : run) {
-    forwardKinematics(s.model, s.q[s.next()], s.workspace);
-    benchmark::DoNotOptimize(s.workspace.bodies.data());
+int run(const Options& options) {
+  const Effort effort = options.quick ? Effort{300, 20, 0.1} : Effort{};
+  const std::regex filter(options.filter);
+  std::FILE* talk = options.json ? stderr : stdout;
+  std::fprintf(talk, "Medians and 99th percentiles of %d samples of %d calls, %d states; one thread.\n",
+               effort.samples, effort.calls, state_count);
+  for (const std::string& absent : absentEngines()) std::fprintf(talk, "Not built in: %s\n", absent.c_str());
+  std::vector<Figure> figures;
+  for (const Case& c : cases()) {
+    const Problem problem(c.name, c.robot);
+    for (const Operation operation : c.operations)
+      if (std::regex_search(c.name + "/" + operationName(operation), filter))
+        addFigures(c, problem, operation, effort, figures);
   }
+  return report(figures, options);
 }
-BENCHMARK(kinematicsOnly)->Name("forward kinematics");
-
-/// From q, kinematics included.
-void twelvePointJacobians(benchmark::State& run) {
-  Setup s;
-  for (auto _ : run) {
-    forwardKinematics(s.model, s.q[s.next()], s.workspace);
-    for (int c = 0; c < 12; ++c) {
-      pointJacobian(s.model, s.workspace, s.frames[c], s.points_W[c], s.J.middleRows<3>(3 * c));
-    }
-    benchmark::DoNotOptimize(s.J.data());
-  }
-}
-BENCHMARK(twelvePointJacobians)->Name("12 point Jacobians");
-
-void choleskyOnly(benchmark::State& run) {
-  Setup s;
-  crba(s.model, s.q[0], s.workspace, s.M);
-  for (auto _ : run) {
-    choleskyFactor(s.M, s.L);
-    benchmark::DoNotOptimize(s.L.data());
-  }
-}
-BENCHMARK(choleskyOnly)->Name("Cholesky factor");
-
-/// M, its factor, b + g and g: what every tick takes.
-void cacheUpdate(benchmark::State& run) {
-  Setup s;
-  DynamicsCache cache(s.model, s.gravity_W);
-  for (auto _ : run) {
-    const int k = s.next();
-    cache.update(s.q[k], s.qd[k]);
-    benchmark::DoNotOptimize(&cache);
-  }
-}
-BENCHMARK(cacheUpdate)->Name("cache update");
-
-void tickSet(benchmark::State& run) {
-  Setup s;
-  DynamicsCache cache(s.model, s.gravity_W);
-  for (auto _ : run) {
-    const int k = s.next();
-    cache.update(s.q[k], s.qd[k]);
-    for (int c = 0; c < 12; ++c) cache.pointJacobian(s.frames[c], s.points_W[c], s.J.middleRows<3>(3 * c));
-    benchmark::DoNotOptimize(s.J.data());
-  }
-}
-BENCHMARK(tickSet)->Name("tick set (cache update, 12 point Jacobians)");
 
 }  // namespace
-}  // namespace tactus::dynamics
+}  // namespace tactus::bench
+
+int main(int argc, char** argv) {
+  tactus::bench::Options options;
+  CLI::App app("Times rigid-body dynamics of Tactus and of the other engines that were found.");
+  app.add_flag("--json", options.json, "Figures as JSON on stdout");
+  app.add_flag("--quick", options.quick, "A tenth of the samples");
+  app.add_option("--filter", options.filter, "Only what this regular expression finds in model/operation");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return tactus::bench::run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "bench_dynamics: %s\n", error.what());
+    return 2;
+  }
+}

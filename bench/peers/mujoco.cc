@@ -1,0 +1,119 @@
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "bench/peers/engine.h"
+#include "bench/peers/mjcf.h"
+
+namespace tactus::bench {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+struct Delete {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+std::unique_ptr<mjModel, Delete> load(const Problem& problem) {
+  const std::string text = mjcf(problem);
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  const int file = mj_makeEmptyFileVFS(files.get(), "robot.xml", static_cast<int>(text.size()));
+  std::copy(text.begin(), text.end(), static_cast<char*>(files->filedata[file]));
+  char error[1000] = "";
+  std::unique_ptr<mjModel, Delete> model(mj_loadXML("robot.xml", files.get(), error, sizeof error));
+  mj_deleteVFS(files.get());
+  if (!model) throw std::runtime_error("MuJoCo refuses '" + problem.name + "': " + error);
+  return model;
+}
+
+/// MuJoCo: of its forward pipeline only the stages that an operation needs.  Its q, q̇ and free joint are those of
+/// description::JointType.
+class Mujoco : public Engine {
+ public:
+  explicit Mujoco(const Problem& problem)
+      : problem_(problem),
+        model_(load(problem)),
+        data_(mj_makeData(model_.get())),
+        vector_(model_->nv),
+        M_(model_->nv, model_->nv),
+        J_(3 * point_count, model_->nv) {
+    for (int k = 0; k < point_count; ++k)
+      bodies_[k] = mj_name2id(model_.get(), mjOBJ_BODY, std::to_string(problem.points[k].body).c_str());
+  }
+
+  std::string name() const override { return std::string("MuJoCo ") + mj_versionString(); }
+  bool offers(Operation operation) const override { return operation != Operation::cache_tick; }
+
+  void run(Operation operation, int state) override {
+    const mjModel* m = model_.get();
+    mjData* d = data_.get();
+    const State& s = problem_.states[state];
+    std::copy_n(s.q.data(), m->nq, d->qpos);
+    mj_kinematics(m, d);
+    mj_comPos(m, d);
+    switch (operation) {
+      case Operation::rnea:
+        std::copy_n(s.qd.data(), m->nv, d->qvel);
+        std::copy_n(s.qdd.data(), m->nv, d->qacc);
+        mj_comVel(m, d);
+        return mj_rne(m, d, 1, vector_.data());
+      case Operation::bias:
+        std::copy_n(s.qd.data(), m->nv, d->qvel);
+        mj_comVel(m, d);
+        return mj_rne(m, d, 0, vector_.data());
+      case Operation::mass_matrix:
+        mj_crb(m, d);
+        return mj_fullM(m, M_.data(), d->qM);
+      case Operation::forward_dynamics:
+        std::copy_n(s.qd.data(), m->nv, d->qvel);
+        mj_crb(m, d);
+        mj_factorM(m, d);
+        mj_comVel(m, d);
+        mj_rne(m, d, 0, d->qfrc_bias);
+        for (int i = 0; i < m->nv; ++i) d->qfrc_smooth[i] = s.tau[i] - d->qfrc_bias[i];
+        return mj_solveM(m, d, vector_.data(), d->qfrc_smooth, 1);
+      case Operation::point_jacobians: return pointJacobians();
+      case Operation::tick:
+        std::copy_n(s.qd.data(), m->nv, d->qvel);
+        mj_crb(m, d);
+        mj_fullM(m, M_.data(), d->qM);
+        mj_comVel(m, d);
+        mj_rne(m, d, 0, vector_.data());
+        return pointJacobians();
+      case Operation::cache_tick: return;
+    }
+  }
+
+  Results results(Operation operation, int) override {
+    switch (operation) {
+      case Operation::mass_matrix: return {{}, M_, {}};
+      case Operation::point_jacobians: return {{}, {}, J_};
+      case Operation::tick: return {vector_, M_, J_};
+      default: return {vector_, {}, {}};
+    }
+  }
+
+ private:
+  void pointJacobians() {
+    for (int k = 0; k < point_count; ++k)
+      mj_jac(model_.get(), data_.get(), J_.data() + 3 * k * model_->nv, nullptr,
+             problem_.points[k].position_W.data(), bodies_[k]);
+  }
+
+  const Problem& problem_;
+  std::unique_ptr<mjModel, Delete> model_;
+  std::unique_ptr<mjData, Delete> data_;
+  std::array<int, point_count> bodies_;
+  Eigen::VectorXd vector_;
+  RowMajor M_, J_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> makeMujoco(const Problem& problem) { return std::make_unique<Mujoco>(problem); }
+
+}  // namespace tactus::bench
