@@ -16,7 +16,7 @@ bool operator==(const Index& a, const Index& b) { return static_cast<int>(a) == 
 }  // namespace SimTK
 #include <Simbody.h>
 
-/// Simbody, and the way between its types and Eigen's.  For the sources of `sim` and its tests only.
+/// Simbody, and the way between its types and Eigen's.  For the sources of `sim`, tests and benchmarks only.
 namespace tactus::sim {
 
 inline SimTK::Vec3 toSimTK(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }

@@ -40,8 +40,7 @@ std::string inertial(const Body& body) {
 }
 
 std::string joint(const Body& body) {
-  if (body.type == JointType::floating) return "<freejoint/>";
-  return std::string("<joint axis=\"0 0 1\" type=\"") + (body.type == JointType::revolute ? "hinge" : "slide") + "\"/>";
+  return body.type == JointType::floating ? "<freejoint/>" : "<joint type=\"hinge\" axis=\"0 0 1\"/>";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <vector>
 
 #include "bench/peers/engine.h"
 #include "bench/peers/mjcf.h"
@@ -114,6 +115,12 @@ class Mujoco : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> makeMujoco(const Problem& problem) { return std::make_unique<Mujoco>(problem); }
+/// None for a tree deeper than MuJoCo's XML reader goes: 100 elements, two of them around the bodies, one in the last.
+std::unique_ptr<Engine> makeMujoco(const Problem& problem) {
+  std::vector<int> depth;
+  for (const Body& body : problem.bodies) depth.push_back(body.parent < 0 ? 1 : depth[body.parent] + 1);
+  if (*std::ranges::max_element(depth) > 97) return nullptr;
+  return std::make_unique<Mujoco>(problem);
+}
 
 }  // namespace tactus::bench

@@ -19,11 +19,10 @@ std::vector<Body> mergedBodies(const Model& model) {
     joint_of[model.joints()[j].first_body + model.joints()[j].body_count - 1] = j;
   std::vector<Body> bodies;
   for (const Model::Joint& joint : model.joints()) {
-    const bool known = joint.type == JointType::revolute || joint.type == JointType::prismatic ||
-                       joint.type == JointType::floating;
+    const bool known = joint.type == JointType::revolute || joint.type == JointType::floating;
     if (!known || joint.driver >= 0)
-      throw std::invalid_argument("joint '" + joint.name + "': the engines of the comparison share only revolute, " +
-                                  "prismatic and floating joints that no other joint drives");
+      throw std::invalid_argument("joint '" + joint.name + "': the comparison takes only revolute and floating " +
+                                  "joints that no other joint drives");
     Body body;
     body.name = joint.name;
     const int parent = model.parent(joint.first_body);
@@ -34,8 +33,8 @@ std::vector<Body> mergedBodies(const Model& model) {
     for (int i = 0; i < joint.body_count; ++i)
       body.origin = body.origin * model.bodies()[joint.first_body + i].origin;
     if (joint.type == JointType::floating && (body.parent >= 0 || !body.origin.isApprox(Eigen::Isometry3d::Identity())))
-      throw std::invalid_argument("joint '" + joint.name + "': the engines of the comparison share floating joints " +
-                                  "only in the world frame");
+      throw std::invalid_argument("joint '" + joint.name + "': the comparison takes a floating joint only where " +
+                                  "its frame is the world's");
     const Model::Body& last = model.bodies()[joint.first_body + joint.body_count - 1];
     body.mass = last.inertia.mass;
     body.centre_of_mass = last.centre_of_mass;

@@ -18,7 +18,7 @@ inline constexpr int state_count = 64;
 struct Body {
   std::string name;
   int parent = -1;                                                 ///< index into Problem::bodies; -1: the world
-  description::JointType type = description::JointType::revolute;  ///< revolute or prismatic along z, or floating
+  description::JointType type = description::JointType::revolute;  ///< revolute about z, or floating
   int position = 0;                                                ///< index into q
   int coordinate = 0;                                              ///< index into q̇
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();        ///< in the parent's frame at q = 0

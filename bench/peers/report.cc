@@ -1,19 +1,28 @@
 #include "bench/peers/report.h"
 
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
-#include <iostream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 namespace tactus::bench {
 namespace {
 
+/// printf into a string of at most one line.
+[[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
+  char text[240];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+bool isMet(const Figure& figure) { return *figure.ratio <= *figure.target; }
+
 std::string verdict(const Figure& figure) {
   if (!figure.target || !figure.ratio) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, "<= %.2f %s", *figure.target, *figure.ratio <= *figure.target ? "met" : "MISSED");
-  return text;
+  return line("<= %.2f %s", *figure.target, isMet(figure) ? "met" : "MISSED");
 }
 
 }  // namespace
@@ -45,25 +54,50 @@ std::optional<double> targetRatio(const std::string& model, Operation operation)
   return found == targets.end() ? std::nullopt : std::optional(found->second);
 }
 
-void printTable(const std::vector<Figure>& figures) {
-  std::string model;
-  std::optional<Operation> operation;
+std::string disagreement(const Figure& f) {
+  if (f.difference <= agreement) return "";
+  return line("%s: %s of %s differs from Tactus's by %.1e, more than %.0e: its time means nothing", f.engine.c_str(),
+              operationName(f.operation).c_str(), f.model.c_str(), f.difference, agreement);
+}
+
+std::string table(const std::vector<Figure>& figures) {
+  std::string text, model, operation;
   for (const Figure& f : figures) {
     if (f.model != model) {
       model = f.model;
-      std::printf("\n%-22s %-14s %9s %9s %9s %11s  %s\n", model.c_str(), "engine", "median us", "p99 us", "/ MuJoCo",
-                  "difference", "target");
-      operation.reset();
+      operation.clear();
+      text += line("\n%-22s %-14s %9s %9s %9s %11s  %s\n", model.c_str(), "engine", "median us", "p99 us", "/ MuJoCo",
+                   "difference", "target");
     }
-    char ratio[20] = "-";
-    if (f.ratio) std::snprintf(ratio, sizeof ratio, "%.3f", *f.ratio);
-    std::printf("%-22s %-14s %9.3f %9.3f %9s %11.1e  %s\n", operation == f.operation ? "" : operationName(f.operation).c_str(),
-                f.engine.c_str(), f.timing.median_us, f.timing.p99_us, ratio, f.difference, verdict(f).c_str());
-    operation = f.operation;
+    const bool is_first = operationName(f.operation) != operation;
+    operation = operationName(f.operation);
+    text += line("%-22s %-14s %9.3f %9.3f %9s %11.1e", is_first ? operation.c_str() : "", f.engine.c_str(),
+                 f.timing.median_us, f.timing.p99_us, f.ratio ? line("%.3f", *f.ratio).c_str() : "-", f.difference);
+    const std::string target = verdict(f);
+    text += target.empty() ? "\n" : "  " + target + "\n";
   }
+  return text;
 }
 
-void printJson(const std::vector<Figure>& figures) {
+std::string growth(const std::vector<Figure>& figures) {
+  std::string text;
+  for (const Operation operation : {Operation::rnea, Operation::forward_dynamics}) {
+    std::map<int, double> medians;                                 // by joints
+    for (const Figure& f : figures)
+      if (f.engine == "Tactus" && f.operation == operation && f.model.starts_with("chain_"))
+        medians[std::stoi(f.model.substr(6))] = f.timing.median_us;
+    if (medians.size() < 2) continue;
+    text += line("\nGrowth of %s (Tactus), ns a joint:", operationName(operation).c_str());
+    for (const auto& [joints, us] : medians) text += line("  %d: %.1f", joints, 1000 * us / joints);
+    const auto& [few, short_us] = *medians.begin();
+    const auto& [many, long_us] = *medians.rbegin();
+    text += line("\n  time ~ joints^%.3f from %d to %d\n",
+                 std::log(long_us / short_us) / std::log(static_cast<double>(many) / few), few, many);
+  }
+  return text;
+}
+
+nlohmann::ordered_json toJson(const std::vector<Figure>& figures) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Figure& f : figures) {
     nlohmann::ordered_json one = {{"model", f.model},
@@ -76,26 +110,10 @@ void printJson(const std::vector<Figure>& figures) {
                                   {"difference", f.difference}};
     if (f.ratio) one["ratio_to_mujoco"] = *f.ratio;
     if (f.target) one["target_ratio"] = *f.target;
-    if (f.ratio && f.target) one["met"] = *f.ratio <= *f.target;
+    if (f.ratio && f.target) one["met"] = isMet(f);
     all.push_back(one);
   }
-  std::cout << all.dump(2) << '\n';
-}
-
-void printGrowth(const std::vector<Figure>& figures) {
-  for (const Operation operation : {Operation::rnea, Operation::forward_dynamics}) {
-    std::map<int, double> medians;                                 // by joints
-    for (const Figure& f : figures)
-      if (f.engine == "Tactus" && f.operation == operation && f.model.starts_with("chain_"))
-        medians[std::stoi(f.model.substr(6))] = f.timing.median_us;
-    if (medians.size() < 2) continue;
-    std::printf("\nGrowth of %s (Tactus), ns a joint:", operationName(operation).c_str());
-    for (const auto& [joints, us] : medians) std::printf("  %d: %.1f", joints, 1000 * us / joints);
-    const auto& [few, short_us] = *medians.begin();
-    const auto& [many, long_us] = *medians.rbegin();
-    std::printf("\n  time ~ joints^%.3f from %d to %d\n",
-                std::log(long_us / short_us) / std::log(static_cast<double>(many) / few), few, many);
-  }
+  return all;
 }
 
 }  // namespace tactus::bench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,9 @@ namespace tactus::bench {
 
 /// "rnea", "mass matrix", …
 std::string operationName(Operation operation);
+
+/// Results that differ by more than this, relative to the largest number, are not the same.
+inline constexpr double agreement = 1e-6;
 
 /// One line of the table.
 struct Figure {
@@ -24,9 +28,12 @@ struct Figure {
 /// The ratio to MuJoCo that this engine is to keep below, where one is set.
 std::optional<double> targetRatio(const std::string& model, Operation operation);
 
-void printTable(const std::vector<Figure>& figures);
-void printJson(const std::vector<Figure>& figures);
-/// How RNEA and forward dynamics of this engine grow with the length of a chain.
-void printGrowth(const std::vector<Figure>& figures);
+/// Why the figure counts for nothing, when the engine did not compute what this one did; empty otherwise.
+std::string disagreement(const Figure& figure);
+
+std::string table(const std::vector<Figure>& figures);
+/// How RNEA and forward dynamics of this engine grow with the length of a chain; empty without chains.
+std::string growth(const std::vector<Figure>& figures);
+nlohmann::ordered_json toJson(const std::vector<Figure>& figures);
 
 }  // namespace tactus::bench
