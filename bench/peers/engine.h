@@ -16,7 +16,7 @@ enum class Operation {
   forward_dynamics,                                                ///< q̈ = M⁻¹ (τ − b − g)
   point_jacobians,                                                 ///< of Problem::points, from q
   tick,                                                            ///< M, b + g and the point Jacobians, from q, q̇
-  cache_tick                                                       ///< this engine's whole tick: the same, g and a factor of M
+  cache_tick                                                       ///< Tactus's whole tick: also g and a factor of M
 };
 
 /// In the coordinates of the Problem, whatever the engine's own ones are.  What was not asked for is empty.

@@ -20,8 +20,8 @@ struct Timing {
   int samples = 0, calls = 0;
 };
 
-/// Largest |a − b| over largest |a| of each result, the worst of all states; infinite for results of other sizes and for
-/// numbers that are not finite.
+/// Largest |a − b| over largest |a| of each result, the worst of all states; infinite for results of other sizes
+/// and for numbers that are not finite.
 double relativeDifference(Engine& reference, Engine& engine, Operation operation);
 
 /// Times the engines side by side: in turn, blocks of samples each, until all are taken.  So load on the machine that
