@@ -115,6 +115,18 @@ TEST(Model, LimitsFollowTheOrderOfQ) {
   EXPECT_EQ(model.lower().size(), 7);
 }
 
+TEST(Model, TheTestRobotsHaveTheirDegreesOfFreedom) {
+  const Model humanoid(test_robots::humanoid());
+  EXPECT_EQ(humanoid.dof(), 36);
+  EXPECT_EQ(humanoid.positionCount(), 37);
+  double mass = 0;
+  for (const Model::Body& body : humanoid.bodies()) mass += body.inertia.mass;
+  EXPECT_NEAR(mass, 75.3, 1e-9);
+  const Model chain(test_robots::chain(50));
+  EXPECT_EQ(chain.dof(), 50);
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(chain.parent(i), i - 1);
+}
+
 TEST(Model, UnknownNamesHaveNoIndex) {
   const Model model(test_robots::lwr());
   EXPECT_EQ(model.frameIndex("8"), -1);

@@ -5,11 +5,13 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/description/robot.h"
 
-/// Robots built in code, for tests and benchmarks: the arm and the hand of the exploration, and random trees.
+/// Robots built in code, for tests and benchmarks: the arm and the hand of the exploration, a humanoid, chains and
+/// random trees.
 namespace tactus::test_robots {
 
 using description::Joint;
@@ -138,6 +140,82 @@ inline Robot lwrAllegro() {
   Robot robot = lwr();
   robot.name = "lwr_allegro";
   addAllegro(robot, robot.linkIndex("7"), pose({-0.0823, 0, 0.0475}, {0, -std::numbers::pi / 3, 0}));
+  return robot;
+}
+
+/// A serial chain of revolute joints about z, y, z, y, …: links of 0.1 m and 0.5 kg, with rotors.
+inline Robot chain(int joints) {
+  Robot robot;
+  robot.name = "chain";
+  const double mass = 0.5, length = 0.1, width = 0.06;
+  const double across = mass / 12 * (length * length + width * width);
+  int parent = addLink(robot, "base", 0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  for (int i = 0; i < joints; ++i) {
+    const std::string number = std::to_string(i + 1);
+    const int child = addLink(robot, "link" + number, mass, {0, 0, length / 2},
+                              {across, across, mass / 6 * width * width});
+    const Eigen::Vector3d axis = i % 2 == 0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+    Joint& joint = addJoint(robot, "joint" + number, JointType::revolute, parent, child,
+                            pose({0, 0, i == 0 ? 0 : length}), axis);
+    joint.rotor_inertia = 1e-6;
+    joint.gear_ratio = 100;
+    parent = child;
+  }
+  return robot;
+}
+
+/// A humanoid of 1.7 m and about 75 kg, all links solid boxes: a pelvis on a floating base, a waist of three joints,
+/// legs of six, arms of seven, one in the neck: 30 joints and 36 degrees of freedom.  x ahead, y to the left, z up.
+inline Robot humanoid() {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  Robot robot;
+  robot.name = "humanoid";
+  const int world = addLink(robot, "world", 0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  const auto addBox = [&](const std::string& name, double mass, const Eigen::Vector3d& centre,
+                          const Eigen::Vector3d& size) {
+    const Eigen::Vector3d square = size.cwiseAbs2();
+    return addLink(robot, name, mass, centre, mass / 12 * (Eigen::Vector3d::Constant(square.sum()) - square));
+  };
+  // A box that `joint` moves against `parent`, and the inertia of the joint's rotor behind its gear.
+  const auto addPart = [&](const std::string& joint, int parent, const Eigen::Vector3d& at,
+                           const Eigen::Vector3d& axis, double mass, const Eigen::Vector3d& centre,
+                           const Eigen::Vector3d& size, double reflected) {
+    const int child = addBox(joint + "_link", mass, centre, size);
+    Joint& added = addJoint(robot, joint, JointType::revolute, parent, child, pose(at), axis);
+    added.gear_ratio = 100;
+    added.rotor_inertia = reflected / (added.gear_ratio * added.gear_ratio);
+    return child;
+  };
+  const Eigen::Vector3d o = Eigen::Vector3d::Zero(), coupling(0.08, 0.08, 0.08);
+
+  const int pelvis = addBox("pelvis", 9, {0, 0, 0.02}, {0.18, 0.28, 0.16});
+  addJoint(robot, "floating_base", JointType::floating, world, pelvis, pose(o));
+
+  for (const auto& [side, s] : {std::pair{"left_", 1.0}, std::pair{"right_", -1.0}}) {
+    const std::string name = side;
+    int leg = addPart(name + "hip_yaw", pelvis, {0, 0.09 * s, -0.08}, z, 1.2, o, coupling, 0.1);
+    leg = addPart(name + "hip_roll", leg, o, x, 1.5, o, coupling, 0.1);
+    leg = addPart(name + "hip_pitch", leg, o, y, 6.5, {0, 0.01 * s, -0.18}, {0.14, 0.13, 0.36}, 0.15);
+    leg = addPart(name + "knee", leg, {0, 0, -0.40}, y, 3.4, {0.01, 0, -0.18}, {0.11, 0.10, 0.36}, 0.15);
+    leg = addPart(name + "ankle_pitch", leg, {0, 0, -0.40}, y, 0.5, o, 0.6 * coupling, 0.05);
+    addPart(name + "ankle_roll", leg, o, x, 1.3, {0.04, 0, -0.05}, {0.24, 0.10, 0.06}, 0.05);
+  }
+
+  int trunk = addPart("waist_yaw", pelvis, {0, 0, 0.12}, z, 1.0, o, coupling, 0.1);
+  trunk = addPart("waist_roll", trunk, o, x, 1.0, o, coupling, 0.1);
+  const int chest = addPart("waist_pitch", trunk, o, y, 19, {0.01, 0, 0.22}, {0.20, 0.32, 0.40}, 0.15);
+
+  for (const auto& [side, s] : {std::pair{"left_", 1.0}, std::pair{"right_", -1.0}}) {
+    const std::string name = side;
+    int arm = addPart(name + "shoulder_pitch", chest, {0, 0.19 * s, 0.36}, y, 0.8, o, coupling, 0.05);
+    arm = addPart(name + "shoulder_roll", arm, o, x, 0.8, o, coupling, 0.05);
+    arm = addPart(name + "shoulder_yaw", arm, o, z, 2.2, {0, 0, -0.14}, {0.09, 0.09, 0.28}, 0.03);
+    arm = addPart(name + "elbow", arm, {0, 0, -0.30}, y, 0.7, {0, 0, -0.05}, {0.08, 0.07, 0.10}, 0.03);
+    arm = addPart(name + "forearm_yaw", arm, {0, 0, -0.10}, z, 0.9, {0, 0, -0.07}, {0.07, 0.07, 0.14}, 0.01);
+    arm = addPart(name + "wrist_roll", arm, {0, 0, -0.16}, x, 0.2, o, 0.5 * coupling, 0.005);
+    addPart(name + "wrist_pitch", arm, o, y, 0.5, {0, 0, -0.08}, {0.09, 0.03, 0.16}, 0.005);
+  }
+  addPart("neck", chest, {0, 0, 0.45}, z, 4.3, {0.02, 0, 0.10}, {0.19, 0.15, 0.22}, 0.01);
   return robot;
 }
 
