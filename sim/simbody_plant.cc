@@ -19,6 +19,20 @@ std::string print(double value) {
 
 const char* unitOf(description::JointType type) { return type == description::JointType::prismatic ? "m" : "rad"; }
 
+/// The robot, when the plant can move all its joints.
+const description::Robot& checkedJoints(const description::Robot& robot) {
+  for (const description::Joint& joint : robot.joints) {
+    if (joint.mimic)
+      throw runtime::PlantError("joint '" + joint.name +
+                                "' follows another joint: the plant moves every joint on its own");
+    if (description::velocityCount(joint.type) > 1)
+      throw runtime::PlantError("joint '" + joint.name +
+                                "' has several degrees of freedom: the plant has revolute, continuous and prismatic "
+                                "joints only");
+  }
+  return robot;
+}
+
 constexpr const char* usual_causes =
     "Usual causes: damping gains too high for the joint's inertia at this control rate (keep d·dt/I below 0.5), a mass "
     "matrix of the controller that lacks the rotor inertia, delay, or a start inside an object.";
@@ -31,7 +45,7 @@ class SimbodyPlant::Implementation {
                  const PlantOptions& options)
       : options_(options),
         names_(jointNames(robot)),
-        robot_(robot, scene.gravity),
+        robot_(checkedJoints(robot), scene.gravity),
         state_(robot_.defaultState()),
         contact_(movingFeatures(robot), scene, robot_.matter().getNumBodies(), options.contact),
         motions_(robot_.matter().getNumBodies()),

@@ -22,8 +22,9 @@ struct PlantOptions {
 /// Built from the description alone: nothing of framework/dynamics is used.
 class SimbodyPlant final : public runtime::Plant {
  public:
-  /// Throws runtime::PlantError when the robot has moving links without mass, Simbody refuses it, or the start has the
-  /// wrong size, is not finite or lies outside the joint limits.
+  /// Throws runtime::PlantError when the robot has joints of several degrees of freedom or driven by others, or moving
+  /// links without mass, when Simbody refuses it, or the start has the wrong size, is not finite or lies outside the
+  /// joint limits.
   SimbodyPlant(const description::Robot& robot, const description::Scene& scene, const Eigen::VectorXd& start_q,
                const PlantOptions& options = {});
   ~SimbodyPlant() override;

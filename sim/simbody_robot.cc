@@ -1,6 +1,7 @@
 #include "sim/simbody_robot.h"
 
 #include <string>
+#include <type_traits>
 
 #include "framework/runtime/plant.h"
 
@@ -33,12 +34,20 @@ Eigen::Matrix3d rotorInertia(const Joint& joint) {
   return 0.5 * joint.reflectedInertia() * (Eigen::Matrix3d::Identity() + joint.axis * joint.axis.transpose());
 }
 
-/// A rotation that takes Simbody's joint axis (z of a Pin, x of a Slider) to the joint's.
+/// A rotation that takes Simbody's joint axes (z of a Pin, x of a Slider, x, y, z of a Planar) to the joint's.
 Eigen::Isometry3d axisAlignment(const Joint& joint) {
-  const Eigen::Vector3d simbody_axis =
-      joint.type == JointType::revolute ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
+  const auto alongAxis = [&](const Eigen::Vector3d& simbody_axis) {
+    return Eigen::Quaterniond::FromTwoVectors(simbody_axis, joint.axis).toRotationMatrix();
+  };
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  X.linear() = Eigen::Quaterniond::FromTwoVectors(simbody_axis, joint.axis).toRotationMatrix();
+  switch (joint.type) {
+    case JointType::revolute: X.linear() = alongAxis(Eigen::Vector3d::UnitZ()); break;
+    case JointType::prismatic: X.linear() = alongAxis(Eigen::Vector3d::UnitX()); break;
+    case JointType::planar: X.linear() = description::planeFrame(joint.axis); break;
+    case JointType::spherical:
+    case JointType::floating:
+    case JointType::fixed: break;
+  }
   return X;
 }
 
@@ -68,6 +77,23 @@ SimTK::MassProperties toSimTK(const MergedMass& merged) {
           SimTK::Inertia(SimTK::SymMat33(I(0, 0), I(1, 0), I(1, 1), I(2, 0), I(2, 1), I(2, 2)))};
 }
 
+/// A body on a joint of `type`, which is not fixed; both its frames are those of the joint.
+SimTK::MobilizedBodyIndex addBody(JointType type, SimTK::MobilizedBody& parent, const SimTK::Transform& X_PF,
+                                  const SimTK::Body& body) {
+  const auto add = [&]<class Mobilizer>(std::type_identity<Mobilizer>) {
+    return Mobilizer(parent, X_PF, body, SimTK::Transform()).getMobilizedBodyIndex();
+  };
+  switch (type) {
+    case JointType::prismatic: return add(std::type_identity<SimTK::MobilizedBody::Slider>());
+    case JointType::planar: return add(std::type_identity<SimTK::MobilizedBody::Planar>());
+    case JointType::spherical: return add(std::type_identity<SimTK::MobilizedBody::Ball>());
+    case JointType::floating: return add(std::type_identity<SimTK::MobilizedBody::Free>());
+    case JointType::revolute:
+    case JointType::fixed: break;
+  }
+  return add(std::type_identity<SimTK::MobilizedBody::Pin>());
+}
+
 }  // namespace
 
 SimbodyRobot::SimbodyRobot(const Robot& robot, const Eigen::Vector3d& gravity_W) : matter_(system_) {
@@ -90,28 +116,21 @@ void SimbodyRobot::build(const Robot& robot, const Eigen::Vector3d& gravity_W) {
   carriers_[robot.root].body = matter_.getGround().getMobilizedBodyIndex();
   std::vector<int> pending(joints_below[robot.root].rbegin(), joints_below[robot.root].rend());
   while (!pending.empty()) {
-    const Joint& joint = robot.joints[pending.back()];
+    const int j = pending.back();
     pending.pop_back();
+    const Joint& joint = robot.joints[j];
     const Carrier& parent = carriers_[joint.parent];
     const Eigen::Isometry3d X_PJ = parent.pose * joint.origin;
-    if (joint.mimic)
-      throw runtime::PlantError("joint '" + joint.name + "' follows another joint: the plant moves every joint on its own");
     if (joint.type == JointType::fixed) {
       carriers_[joint.child] = {parent.body, X_PJ};
-    } else if (joint.type != JointType::revolute && joint.type != JointType::prismatic) {
-      throw runtime::PlantError("joint '" + joint.name +
-                                "' has several degrees of freedom: the plant has revolute, continuous and prismatic "
-                                "joints only");
     } else {
       const Eigen::Isometry3d X_JB = axisAlignment(joint);
       const MergedMass mass = mergedMass(robot, joint, X_JB.inverse());
-      SimTK::MobilizedBody& carrier = matter_.updMobilizedBody(parent.body);
-      const SimTK::Transform X_PF = sim::toSimTK(X_PJ * X_JB);
-      const SimTK::Body::Rigid body(toSimTK(mass));
       const SimTK::MobilizedBodyIndex index =
-          joint.type == JointType::revolute
-              ? SimTK::MobilizedBody::Pin(carrier, X_PF, body, SimTK::Transform()).getMobilizedBodyIndex()
-              : SimTK::MobilizedBody::Slider(carrier, X_PF, body, SimTK::Transform()).getMobilizedBodyIndex();
+          addBody(joint.type, matter_.updMobilizedBody(parent.body), sim::toSimTK(X_PJ * X_JB),
+                  SimTK::Body::Rigid(toSimTK(mass)));
+      joints_.push_back(j);
+      coordinates_.add(index, joint.type);
       carriers_[joint.child] = {index, X_JB.inverse()};
       bodies_.push_back(index);
       weights_.push_back({sim::toSimTK(mass.centreOfMass()), sim::toSimTK(Eigen::Vector3d(mass.mass * gravity_W))});
@@ -124,7 +143,7 @@ void SimbodyRobot::build(const Robot& robot, const Eigen::Vector3d& gravity_W) {
 void SimbodyRobot::gravityForces(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& forces) const {
   forces.resize(matter_.getNumBodies());
   forces.setToZero();
-  for (int i = 0; i < dof(); ++i) {
+  for (size_t i = 0; i < bodies_.size(); ++i) {
     const SimTK::Rotation& R_WB = matter_.getMobilizedBody(bodies_[i]).getBodyRotation(state);
     const SimTK::Vec3 arm_W = R_WB * weights_[i].centre_of_mass_B;
     forces[bodies_[i]] = SimTK::SpatialVec(arm_W % weights_[i].force_W, weights_[i].force_W);

@@ -4,14 +4,17 @@
 #include <vector>
 
 #include "framework/description/robot.h"
+#include "sim/simbody_coordinates.h"
 #include "sim/simtk_eigen.h"
 
 namespace tactus::sim {
 
-/// A description::Robot as a Simbody tree: one mobilized body per moving joint (Pin or Slider), fixed links merged into
-/// the body that carries them, rotor inertia added as the thin disk that robot.h defines.  q and u are in the order of
-/// description::Robot::movingJoints().  There is no force subsystem, whose bookkeeping would cost every step: gravity is
-/// a set of body forces that one asks for.  Joint damping, friction and stops are not part of this class.
+/// A description::Robot as a Simbody tree: one mobilized body per moving joint (Pin, Slider, Planar, Ball or Free),
+/// fixed links merged into the body that carries them, rotor inertia added as the thin disk that robot.h defines.
+/// Every joint moves on its own: couplings (mimic) are not kept, a driven joint has coordinates like any other.  Joints
+/// are numbered depth-first as description::Robot says; q and u of revolute and prismatic joints are ours, for the
+/// others see SimbodyCoordinates.  There is no force subsystem, whose bookkeeping would cost every step: gravity is a
+/// set of body forces that one asks for.  Joint damping, friction and stops are not part of this class.
 /// Only the sources of `sim` and tests include this header: it brings Simbody with it.
 class SimbodyRobot {
  public:
@@ -20,10 +23,13 @@ class SimbodyRobot {
   SimbodyRobot(const SimbodyRobot&) = delete;
   SimbodyRobot& operator=(const SimbodyRobot&) = delete;
 
-  int dof() const { return static_cast<int>(bodies_.size()); }
+  int dof() const { return coordinates_.dof(); }
+  /// Indices into description::Robot::joints of those that move, driven ones too, in the order of q.
+  const std::vector<int>& joints() const { return joints_; }
+  const SimbodyCoordinates& coordinates() const { return coordinates_; }
   const SimTK::MultibodySystem& system() const { return system_; }
   const SimTK::SimbodyMatterSubsystem& matter() const { return matter_; }
-  /// A state at q = 0, u = 0, realized to Model.
+  /// A state at q = 0 (unit quaternions), u = 0, realized to Model.
   SimTK::State defaultState() const { return system_.getDefaultState(); }
 
   /// The mobilized body that carries a link (index into description::Robot::links), Ground for a fixed one.
@@ -47,8 +53,10 @@ class SimbodyRobot {
 
   SimTK::MultibodySystem system_;
   SimTK::SimbodyMatterSubsystem matter_;
-  std::vector<SimTK::MobilizedBodyIndex> bodies_;                  // by joint in q
-  std::vector<Weight> weights_;                                    // by joint in q
+  std::vector<int> joints_;
+  SimbodyCoordinates coordinates_;
+  std::vector<SimTK::MobilizedBodyIndex> bodies_;                  // by joint in joints_
+  std::vector<Weight> weights_;                                    // by joint in joints_
   std::vector<Carrier> carriers_;                                  // by link
 };
 

@@ -290,6 +290,17 @@ inline Robot randomTree(Random& random, int moving, bool every_kind = false) {
   return robot;
 }
 
+/// A tree of exactly `dof` degrees of freedom, with joints of every kind.
+inline Robot randomTreeOf(Random& random, int dof) {
+  while (true) {
+    const int joints = dof - static_cast<int>(random() % (2 * dof / 3 + 1));
+    Robot robot = randomTree(random, joints, true);
+    int made = 0;
+    for (const Joint& joint : robot.joints) made += description::velocityCount(joint.type);
+    if (made == dof) return robot;
+  }
+}
+
 /// Lets about a third of the joints of one degree of freedom follow others, some of them through a third one.
 inline void coupleJoints(Random& random, Robot& robot) {
   std::vector<int> single;

@@ -208,6 +208,21 @@ TEST(Errors, BadStartsAreRefused) {
   EXPECT_EQ(start(Eigen::Vector2d(0, 1.5)), "the start of joint 'elbow' is 1.5 rad, outside its range -1 to 1");
 }
 
+TEST(Errors, JointsThatThePlantCannotMoveAreRefused) {
+  for (const auto type :
+       {description::JointType::planar, description::JointType::spherical, description::JointType::floating}) {
+    description::Robot robot = pendulum();
+    robot.joints[1].type = type;
+    EXPECT_EQ(messageOf([&] { SimbodyPlant(robot, {}, Eigen::Vector2d::Zero()); }),
+              "joint 'elbow' has several degrees of freedom: the plant has revolute, continuous and prismatic joints "
+              "only");
+  }
+  description::Robot robot = pendulum();
+  robot.joints[1].mimic = description::Mimic{.driver = 0};
+  EXPECT_EQ(messageOf([&] { SimbodyPlant(robot, {}, Eigen::Vector2d::Zero()); }),
+            "joint 'elbow' follows another joint: the plant moves every joint on its own");
+}
+
 TEST(Errors, RobotsUnfitForDynamicsAreRefused) {
   description::Robot robot = pendulum();
   robot.links[2].mass = 0;
