@@ -40,7 +40,7 @@ void forwardKinematics(const Model& model, const Eigen::VectorXd& q, Workspace& 
     const BodyState* parent = body.parent < 0 ? nullptr : &workspace.bodies[body.parent];
     const Eigen::Matrix3d& R_WP = parent ? parent->R_WB : R_W;
     const Eigen::Vector3d& p_WP = parent ? parent->p_WB : p_W;
-    const Eigen::Matrix3d R = R_WP * body.origin.linear();         // R_WB at q = 0
+    const Eigen::Matrix3d R = body.unturned ? R_WP : Eigen::Matrix3d(R_WP * body.origin.linear());  // R_WB at q = 0
     state.p_WB = p_WP + R_WP * body.origin.translation();
     switch (body.motion) {
       case Motion::rotation: {
@@ -101,7 +101,8 @@ void forwardAccelerations(const Model& model, const Eigen::VectorXd& qdd, const 
 void worldInertias(const Model& model, Workspace& workspace) {
   for (int i = 0; i < model.bodyCount(); ++i) {
     BodyState& state = workspace.bodies[i];
-    state.inertia = model.bodies()[i].inertia.transformed(state.R_WB, state.p_WB);
+    const Model::Body& body = model.bodies()[i];
+    state.inertia = body.massless ? RigidBodyInertia() : body.inertia.transformed(state.R_WB, state.p_WB);
   }
 }
 

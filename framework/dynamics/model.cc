@@ -193,6 +193,8 @@ void Model::addBodies(const description::Joint& joint, const Drive& drive, const
 
 void Model::finishBodies() {
   for (Body& body : bodies_) {
+    body.unturned = body.origin.linear() == Eigen::Matrix3d::Identity();
+    body.massless = body.inertia.mass == 0 && body.inertia.rotational.isZero(0);
     body.centre_of_mass = body.inertia.centreOfMass();
     body.central_inertia = body.inertia.inertiaAboutCentreOfMass();
   }

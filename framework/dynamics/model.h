@@ -60,6 +60,8 @@ class Model {
     double ratio = 1;                                              ///< of a driven body's rate to its coordinate's
     double offset = 0;                                             ///< rad or m
     Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();      ///< in the parent body's frame at q = 0
+    bool unturned = true;                                          ///< the origin's rotation is the identity
+    bool massless = false;                                         ///< all but the last body of a joint
     RigidBodyInertia inertia;                                      ///< merged links and rotor, body frame
     Eigen::Vector3d centre_of_mass = Eigen::Vector3d::Zero();      ///< the same inertia about the centre of mass:
     Eigen::Matrix3d central_inertia = Eigen::Matrix3d::Zero();     ///< kg m², body axes
