@@ -46,6 +46,7 @@ inline constexpr Code unknown_model{"E050", "the robot's model cannot be found"}
 inline constexpr Code wrong_start{"E051", "the start has not one value for each joint"};
 inline constexpr Code start_outside_limits{"E052", "the start is outside a joint's limits"};
 inline constexpr Code carrier_not_upright{"E053", "an object stands on one whose top is not level"};
+inline constexpr Code unfit_rate{"E054", "a tick is not a whole number of the plant's steps"};
 // Compiling.
 inline constexpr Code lacking_ability{"E060", "the back end cannot honour what the stack asks for"};
 inline constexpr Code refused_by_factory{"E061", "a task, a signal or a back end refuses its values"};
@@ -75,7 +76,7 @@ inline constexpr std::array all_codes{
     code::level_order,        code::unknown_link,       code::unknown_joint,    code::unknown_object,
     code::unknown_port,       code::wrong_port_type,    code::unknown_class,    code::unknown_parameter,
     code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
-    code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::lacking_ability,
+    code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::unfit_rate, code::lacking_ability,
     code::refused_by_factory, code::unfit_for_dynamics, code::plugin_failed,    code::no_root_link,
     code::several_root_links, code::kinematic_loop,     code::unsupported_joint, code::reversed_limits,
     code::refused_by_urdf,    code::no_inertia,         code::bad_mass,         code::bad_inertia,

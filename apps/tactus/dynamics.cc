@@ -153,7 +153,7 @@ first, in world axes, at the link's origin.  A robot without masses gets joints 
 
 Examples:
   tactus dynamics robot.urdf --q 0.1,-0.2,0.3 --json
-  tactus dynamics lwr4plus --q 0,0,0,1.57,0,0,0 --qdd 0,0,0,1,0,0,0 --gravity 0,0,0)");
+  tactus dynamics lwr_4plus --q 0,0,0,1.57,0,0,0 --qdd 0,0,0,1,0,0,0 --gravity 0,0,0)");
   command->callback([=, &context] { context.action = [=] { return printDynamics(*arguments); }; });
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 
+#include "framework/runtime/version.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {

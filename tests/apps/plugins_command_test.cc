@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "framework/runtime/version.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {

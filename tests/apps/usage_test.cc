@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "framework/runtime/version.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {
