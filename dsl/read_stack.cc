@@ -21,6 +21,15 @@ using control::ElementRow;
 using control::ElementValues;
 using control::Origin;
 
+/// A name that a stack could give itself, from that of its file: "2 arms.xml" is stack-2-arms.
+std::string nameFromFile(const std::string& file) {
+  const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  std::string name = std::filesystem::path(file).stem().string();
+  for (char& c : name)
+    if (!isLetter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-') c = '-';
+  return !name.empty() && isLetter(name.front()) ? name : "stack-" + name;
+}
+
 /// From a document to a Stack, step by step; errors are gathered on the way.
 class StackReader {
  public:
@@ -39,8 +48,7 @@ class StackReader {
 
     ElementChecker checker(registry_.elements(), findings_);
     const CheckedElement root = checker.check(*document.root);
-    stack_.name =
-        root.values.has("name") ? root.values.text("name") : std::filesystem::path(stack_.file).stem().string();
+    stack_.name = root.values.has("name") ? root.values.text("name") : nameFromFile(stack_.file);
     if (const auto* robot = root.first("robot")) readRobotOf(*robot);
     if (const auto* scene = root.first("scene")) readScene(*scene, stack_, findings_);
     readSignals(root);

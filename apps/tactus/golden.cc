@@ -134,6 +134,17 @@ void refuseUnusable(const Session& session) {
   }
 }
 
+/// Takes over what is not recorded: tolerances, a robot that stands in the case, notes.
+void keepOtherFiles(const fs::path& folder, const fs::path& made) {
+  fs::permissions(made, fs::exists(folder) ? fs::status(folder).permissions() : fs::perms(0755));
+  if (!fs::exists(folder)) return;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "stack.xml" || name == "expected.csv" || name == "provenance.json") continue;
+    fs::copy(entry.path(), made / name, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
+  }
+}
+
 /// Refuses to put a case where something else stands.
 void checkPlace(const fs::path& folder) {
   if (!fs::exists(folder)) return;
@@ -163,8 +174,7 @@ int record(const GoldenArguments& arguments) {
   fs::create_directories(folder.parent_path());
   const TemporaryFolder fresh(folder.parent_path() / ("." + folder.filename().string() + "-"));
   const fs::path made = fresh.path;
-  if (fs::exists(folder)) fs::copy(folder, made, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
-  fs::permissions(made, fs::exists(folder) ? fs::status(folder).permissions() : fs::perms(0755));
+  keepOtherFiles(folder, made);
   // The case keeps the stack with everything resolved, so that it stands alone.
   const std::string stack_file = (made / "stack.xml").string();
   runtime::writeFile(stack_file, portableStack(stack, folder));

@@ -70,8 +70,9 @@ int run(const RunArguments& arguments, bool json) {
   const runtime::LoopResult result = runInto(folder, session, interrupt.stop());
   const nlohmann::ordered_json description = describeRun(session, result);
   const bool described = wrote([&] { writeJson(folder + "/run.json", description); });
-  const bool has_ticks = session.statistics().ticks() > 0;
-  const bool drawn = has_ticks && wrote([&] { writeReport(folder); });
+  // A log that could not be written is no ground for pictures; `tactus report` makes them of what there is.
+  const bool drawable = session.statistics().ticks() > 0 && result.ending != runtime::Ending::file_error;
+  const bool drawn = drawable && wrote([&] { writeReport(folder); });
 
   if (json) {
     std::cout << description.dump(2) << "\n";
@@ -82,7 +83,7 @@ int run(const RunArguments& arguments, bool json) {
   for (const std::string& warning : session.warnings()) std::cerr << "tactus run: warning: " << warning << "\n";
   std::cerr << "run folder: " << folder << (drawn ? ", pictures in report.html\n" : "\n");
   const int code = exitCodeOf(session, result.ending);
-  return code == exit_done && !(described && (drawn || !has_ticks)) ? exit_files : code;
+  return code == exit_done && !(described && drawn == drawable) ? exit_files : code;
 }
 
 }  // namespace
