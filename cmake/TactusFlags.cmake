@@ -8,11 +8,12 @@ option(TACTUS_WERROR "Warnings are errors" OFF)
 option(TACTUS_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
 
 add_library(tactus_flags INTERFACE)
+set_target_properties(tactus_flags PROPERTIES EXPORT_NAME flags)
 target_compile_features(tactus_flags INTERFACE cxx_std_20)
 # -Wrestrict raises false alarms on temporaries of std::string in g++ 12 (GCC bug 105651).
-target_compile_options(tactus_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wno-restrict $<$<BOOL:${TACTUS_WERROR}>:-Werror>)
-target_compile_definitions(tactus_flags INTERFACE TACTUS_VERSION="${PROJECT_VERSION}"
-                           $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
+target_compile_options(tactus_flags INTERFACE -ffp-contract=off
+  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wno-restrict;$<$<BOOL:${TACTUS_WERROR}>:-Werror>>")
+target_compile_definitions(tactus_flags INTERFACE $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
 target_include_directories(tactus_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tactus>)
 if(TACTUS_SANITIZE)

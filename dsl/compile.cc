@@ -216,20 +216,31 @@ class Compiler {
       control::Level level;
       level.priority = description.priority;
       level.weight = description.weight;
-      if (abilities && description.strict && !abilities->strict_levels)
-        errors_.add(code::lacking_ability, description.strict_place, 4, "",
-                    backEndName() + " weighs levels against each other: it cannot keep one strictly");
+      if (abilities) checkStrictness(description, levels.empty(), *abilities);
       for (const ElementInstance& element : description.tasks) {
         auto task = make<control::Task>(element, [&](const control::BuildContext& context) {
           return registry_.makeTask(context);
         });
         if (!task) continue;
+        if (task->capacity() < 0) {
+          errors_.addAt(code::refused_by_factory, element, "",
+                        "the task says that it has at most " + std::to_string(task->capacity()) + " rows");
+          continue;
+        }
         if (abilities) checkAbilities(element, *task, *abilities);
         level.tasks.push_back({element.name, std::move(task)});
       }
       levels.push_back(std::move(level));
     }
     return levels;
+  }
+
+  void checkStrictness(const LevelDescription& level, bool first, const control::Abilities& abilities) {
+    if (!level.strict || abilities.strict_levels || (first && abilities.strict_first_level)) return;
+    const std::string reason = abilities.why_not_strict.empty()
+                                   ? "weighs levels against each other: it cannot keep one strictly"
+                                   : "cannot keep this level strictly: " + abilities.why_not_strict;
+    errors_.add(code::lacking_ability, level.strict_place, 4, "", backEndName() + " " + reason);
   }
 
   void checkAbilities(const ElementInstance& element, const control::Task& task, const control::Abilities& abilities) {

@@ -18,6 +18,13 @@ using control::Value;
 
 std::string tag(const std::string& name) { return std::string("<").append(name).append(">"); }
 
+std::string allListed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// The first dozen.
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t most = 12;
   std::string text;
@@ -231,9 +238,11 @@ bool ElementChecker::checkGivenAttributes(const XmlElement& element, const Eleme
       right = false;
       if (row.takes_back_end_options && !back_end) continue;  // which options there are depends on the back end
       const std::string whose = back_end ? "back end '" + back_end->name + "'" : tag(element.name);
-      findings_.errorAtName(code::unknown_attribute, element, attribute,
-                            whose + " has no " + (back_end ? "option '" : "attribute '") + attribute.name + "'",
-                            nearestName(attribute.name, attributeNames(row, back_end)));
+      const auto names = attributeNames(row, back_end);
+      const std::string nearest = nearestName(attribute.name, names);
+      std::string message = whose + " has no " + (back_end ? "option '" : "attribute '") + attribute.name + "'";
+      if (nearest.empty()) message += names.empty() ? "; it takes none" : "; it takes " + allListed(names);
+      findings_.errorAtName(code::unknown_attribute, element, attribute, message, nearest);
       continue;
     }
     if (attribute.value.find("${") != std::string::npos) {

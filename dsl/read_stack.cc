@@ -1,6 +1,7 @@
 #include "dsl/read_stack.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -21,6 +22,15 @@ using control::ElementRow;
 using control::ElementValues;
 using control::Origin;
 
+/// A name that a stack could give itself, from that of its file: "2 arms.xml" is stack-2-arms.
+std::string nameFromFile(const std::string& file) {
+  const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  std::string name = std::filesystem::path(file).stem().string();
+  for (char& c : name)
+    if (!isLetter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-') c = '-';
+  return !name.empty() && isLetter(name.front()) ? name : "stack-" + name;
+}
+
 /// From a document to a Stack, step by step; errors are gathered on the way.
 class StackReader {
  public:
@@ -39,8 +49,7 @@ class StackReader {
 
     ElementChecker checker(registry_.elements(), findings_);
     const CheckedElement root = checker.check(*document.root);
-    stack_.name =
-        root.values.has("name") ? root.values.text("name") : std::filesystem::path(stack_.file).stem().string();
+    stack_.name = root.values.has("name") ? root.values.text("name") : nameFromFile(stack_.file);
     if (const auto* robot = root.first("robot")) readRobotOf(*robot);
     if (const auto* scene = root.first("scene")) readScene(*scene, stack_, findings_);
     readSignals(root);
@@ -234,6 +243,7 @@ class StackReader {
     stack_.controller = {ElementValues(*element.row), "", element.xml->place(), element.xml->path()};
     for (const auto& [name, value] : element.values.all())
       if (element.row->attribute(name)) stack_.controller.values.set(name, value);
+    if (element.values.has("rate")) checkRate(element);
     if (!element.values.has("backend")) return;
     std::vector<ElementValues> written = givenOptions(element);
     if (written.empty()) return;
@@ -262,6 +272,21 @@ class StackReader {
     stack_.alternatives = std::move(written);
     setOptions(element, stack_.back_end.row());
     fillOptions(element, stack_.back_end.row());
+  }
+
+  void checkRate(const CheckedElement& element) {
+    const double rate = element.values.real("rate"), step = options_.plant_step;
+    const XmlAttribute* written = element.xml->attribute("rate");
+    if (step <= 0 || !written) return;
+    const double steps = 1 / (rate * step);
+    if (steps > 0.5 && std::abs(steps - std::round(steps)) <= 1e-6) return;
+    const auto rateOf = [&](double whole) { return control::formatNumber(1 / (whole * step)); };
+    const std::string nearest =
+        steps < 1 ? "the highest rate is " + rateOf(1)
+                  : "the nearest rates are " + rateOf(std::ceil(steps)) + " and " + rateOf(std::floor(steps));
+    findings_.errorAtValue(code::unfit_rate, *element.xml, *written,
+                           "at " + control::formatNumber(rate) + " Hz a tick is not a whole number of the plant's steps of " +
+                               control::formatNumber(step) + " s: " + nearest + " Hz");
   }
 
   /// What the controller, first, and its alternatives give their back ends; those that name none are left out.
@@ -339,10 +364,40 @@ class StackReader {
     if (!run || !run->complete) return;
     stack_.run.duration = run->values.real("duration");
     stack_.run.seed = static_cast<std::uint64_t>(run->values.integer("seed"));
+    checkDuration(*run);
+    for (const CheckedElement* target : run->all("target")) readTarget(*target);
     const CheckedElement* record = run->first("record");
     if (!record || !record->complete) return;
     stack_.run.columns = record->values.text("columns");
     stack_.run.record_rate = record->values.real("rate");
+  }
+
+  void checkDuration(const CheckedElement& run) {
+    const XmlAttribute* written = run.xml->attribute("duration");
+    if (!written || !stack_.controller.values.has("rate")) return;
+    const double period = 1 / stack_.controller.values.real("rate");
+    if (std::lround(stack_.run.duration / period) > 0) return;
+    findings_.errorAtValue(code::bad_value, *run.xml, *written,
+                           "attribute 'duration': " + control::formatNumber(stack_.run.duration) +
+                               " s is shorter than one tick of " + control::formatNumber(period) + " s");
+  }
+
+  void readTarget(const CheckedElement& element) {
+    if (!element.complete) return;
+    const auto bound = [&](const char* name) {
+      return element.values.has(name) ? std::optional(element.values.real(name)) : std::nullopt;
+    };
+    const TargetDescription target{element.values.text("metric"), bound("lower"), bound("upper")};
+    if (!target.lower && !target.upper)
+      findings_.error(code::missing_attribute, *element.xml, "<target> needs 'lower' or 'upper', or both");
+    if (target.lower && target.upper && *target.lower > *target.upper)
+      findings_.errorAtValue(code::bad_value, *element.xml, *element.xml->attribute("upper"),
+                             "attribute 'upper': it must not be below 'lower'");
+    for (const TargetDescription& other : stack_.run.targets)
+      if (other.metric == target.metric)
+        findings_.errorAtValue(code::duplicate_name, *element.xml, *element.xml->attribute("metric"),
+                               "'" + target.metric + "' has its target already");
+    stack_.run.targets.push_back(target);
   }
 
   void checkReferences(const CheckedElement& root) {

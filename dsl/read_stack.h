@@ -12,12 +12,16 @@
 
 namespace tactus::dsl {
 
+/// Simulated seconds that a run takes at most.
+inline constexpr double longest_run = 1e6;
+
 struct ReadOptions {
   std::map<std::string, std::string> set;         ///< --set name=value: overrides <parameter>; unknown names are errors
   std::vector<std::string> model_path;                     ///< folders searched for robot models, after the stack's own
   /// Loads the plugin that <plugin name> asks for into the registry; throws std::runtime_error with the reason.
   std::function<void(const std::string& name)> load_plugin;
   std::string backend;                                        ///< --backend: replaces the controller's; "" = as written
+  double plant_step = 0;                                      ///< s; a tick must be a whole number of them; 0 = any rate
   std::map<std::string, std::string> backend_options;             ///< option=value for that back end, e.g. solver=nlopt
 };
 

@@ -37,11 +37,19 @@ struct ObjectDescription {
   std::vector<control::ElementValues> shapes;                      ///< of object.primitives, as read
 };
 
+/// What a figure of the run should reach; at least one bound.
+struct TargetDescription {
+  std::string metric;
+  std::optional<double> lower;
+  std::optional<double> upper;
+};
+
 struct RunOptions {
   double duration = 10;                                            ///< s
   std::uint64_t seed = 1;
   std::string columns = "default";                                 ///< "default" | "all"
   double record_rate = 100;                                        ///< Hz, rows of log.csv
+  std::vector<TargetDescription> targets;
 };
 
 /// A stack, read and checked, nothing built yet.

@@ -179,7 +179,7 @@ ElementRow controllerRow() {
           .description = "The back end that solves every tick, with that back end's own options as further attributes.",
           .attributes = {{.name = "backend", .type = ValueType::text, .required = true, .description = "Its name."},
                          {.name = "rate", .type = ValueType::real, .unit = "Hz", .default_text = "1000",
-                          .description = "Ticks per second.", .lower = 0, .lower_open = true}},
+                          .description = "Ticks per second; a tick must be a whole number of the plant's steps.", .lower = 1}},
           .children = {{"alternative"}},
           .takes_back_end_options = true};
 }
@@ -199,10 +199,20 @@ ElementRow runRow() {
           .kind = ElementKind::structure,
           .description = "What `tactus run` does when it is not told otherwise.",
           .attributes = {{.name = "duration", .type = ValueType::real, .unit = "s", .default_text = "10",
-                          .description = "Simulated time.", .lower = 0, .lower_open = true},
+                          .description = "Simulated time, at least one tick.", .lower = 0, .upper = longest_run, .lower_open = true},
                          {.name = "seed", .type = ValueType::integer, .default_text = "1",
                           .description = "Of every draw; 0 draws no jitter.", .lower = 0}},
-          .children = {{"record", 0, 1}}};
+          .children = {{"record", 0, 1}, {"target"}}};
+}
+
+ElementRow targetRow() {
+  return {.name = "target",
+          .kind = ElementKind::structure,
+          .description = "What a figure of the run should reach: the summary and the report say whether it was met.",
+          .attributes = {{.name = "metric", .type = ValueType::text, .required = true,
+                          .description = "A key of `metrics` in run.json, such as contact_force_mean_N."},
+                         {.name = "lower", .type = ValueType::real, .description = "Least value; one bound at least."},
+                         {.name = "upper", .type = ValueType::real, .description = "Greatest value."}}};
 }
 
 ElementRow recordRow() {
@@ -220,7 +230,7 @@ ElementRow recordRow() {
 void addStructureElements(control::Registry& registry) {
   for (ElementRow row : {stackRow(), parameterRow(), includeRow(), defaultsRow(), pluginRow(), robotRow(), startRow(),
                          sceneRow(), objectRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
-                         recordRow()})
+                         recordRow(), targetRow()})
     registry.addStructure(std::move(row));
   registry.addStructure(shapeRow("plane", "The half space below z = 0 of its own frame.", {}));
   registry.addStructure(shapeRow("box", "A box about its own origin.",

@@ -44,18 +44,40 @@ std::string canonical(const AttributeRow& row, const std::string& text) {
   return out;
 }
 
+bool isReference(ValueType type) {
+  return type == ValueType::port || type == ValueType::link || type == ValueType::links || type == ValueType::joints ||
+         type == ValueType::object;
+}
+
+/// The table may name by default what this stack does not have; written out, that would be an error.
+bool isWritten(const AttributeRow& row, const control::Value& value, const std::vector<ElementInstance>& signals) {
+  if (row.type == ValueType::element_class) return false;
+  if (value.origin.kind != control::Origin::Kind::table_default || !isReference(row.type)) return true;
+  const std::size_t dot = value.text.find('.');
+  return row.type == ValueType::port && dot != std::string::npos &&
+         std::any_of(signals.begin(), signals.end(), [&](const ElementInstance& signal) {
+           const auto& ports = signal.values.row().ports;
+           return signal.name == value.text.substr(0, dot) &&
+                  std::any_of(ports.begin(), ports.end(), [&](const control::PortRow& port) {
+                    return port.name == value.text.substr(dot + 1) && port.type == row.port_type;
+                  });
+         });
+}
+
 /// Attributes in the order of the row, defaults and classes written out.
-std::string attributesOf(const ElementRow& row, const ElementValues& values) {
+std::string attributesOf(const ElementRow& row, const ElementValues& values,
+                         const std::vector<ElementInstance>& signals = {}) {
   std::string out;
   for (const AttributeRow& attribute : row.attributes) {
-    if (!values.has(attribute.name) || attribute.type == ValueType::element_class) continue;
+    if (!values.has(attribute.name) || !isWritten(attribute, values.value(attribute.name), signals)) continue;
     out += attributeText(attribute.name, canonical(attribute, values.text(attribute.name)));
   }
   return out;
 }
 
-std::string leaf(const std::string& indent, const ElementValues& values) {
-  return indent + "<" + values.row().name + attributesOf(values.row(), values) + "/>\n";
+std::string leaf(const std::string& indent, const ElementValues& values,
+                 const std::vector<ElementInstance>& signals = {}) {
+  return indent + "<" + values.row().name + attributesOf(values.row(), values, signals) + "/>\n";
 }
 
 std::string numbersText(const Eigen::VectorXd& numbers) {
@@ -71,13 +93,20 @@ std::string objectText(const ObjectDescription& object) {
   return out + "    </object>\n";
 }
 
-std::string levelText(const LevelDescription& level) {
+std::string levelText(const LevelDescription& level, const std::vector<ElementInstance>& signals) {
   std::string out = "  <level";
   out += attributeText("priority", std::to_string(level.priority));
   if (level.weight) out += attributeText("weight", control::formatNumber(*level.weight));
   out += attributeText("strict", level.strict ? "true" : "false") + ">\n";
-  for (const ElementInstance& task : level.tasks) out += leaf("    ", task.values);
+  for (const ElementInstance& task : level.tasks) out += leaf("    ", task.values, signals);
   return out + "  </level>\n";
+}
+
+std::string targetText(const TargetDescription& target) {
+  std::string out = "    <target" + attributeText("metric", target.metric);
+  if (target.lower) out += attributeText("lower", control::formatNumber(*target.lower));
+  if (target.upper) out += attributeText("upper", control::formatNumber(*target.upper));
+  return out + "/>\n";
 }
 
 /// A model that was found beside the stack is named by its full path, so that the resolved stack can stand elsewhere.
@@ -101,10 +130,10 @@ std::string writeResolved(const Stack& stack) {
   out += "  </scene>\n";
   if (!stack.signals.empty()) {
     out += "  <signals>\n";
-    for (const ElementInstance& signal : stack.signals) out += leaf("    ", signal.values);
+    for (const ElementInstance& signal : stack.signals) out += leaf("    ", signal.values, stack.signals);
     out += "  </signals>\n";
   }
-  for (const LevelDescription& level : stack.levels) out += levelText(level);
+  for (const LevelDescription& level : stack.levels) out += levelText(level, stack.signals);
   out += "  <controller" + attributesOf(stack.controller.values.row(), stack.controller.values) +
          attributesOf(stack.back_end.row(), stack.back_end) + (stack.alternatives.empty() ? "/>\n" : ">\n");
   for (const ElementValues& other : stack.alternatives)
@@ -113,8 +142,9 @@ std::string writeResolved(const Stack& stack) {
   out += "  <run" + attributeText("duration", control::formatNumber(stack.run.duration)) +
          attributeText("seed", std::to_string(stack.run.seed)) + ">\n    <record" +
          attributeText("columns", stack.run.columns) +
-         attributeText("rate", control::formatNumber(stack.run.record_rate)) + "/>\n  </run>\n";
-  return out + "</stack>\n";
+         attributeText("rate", control::formatNumber(stack.run.record_rate)) + "/>\n";
+  for (const TargetDescription& target : stack.run.targets) out += targetText(target);
+  return out + "  </run>\n</stack>\n";
 }
 
 }  // namespace tactus::dsl

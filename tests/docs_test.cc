@@ -1,14 +1,17 @@
-// Every stack shown in README.md and docs/ passes `tactus check`.
+// What README.md and docs/ show works as shown: stacks are run, and the plugin of the manual is built by itself.
 
 #include <gtest/gtest.h>
-
 #include <sys/wait.h>
 
-#include <cstdlib>
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include "framework/runtime/csv_table.h"
+#include "tests/runtime/temporary_folder.h"
 
 namespace {
 
@@ -22,19 +25,20 @@ std::vector<fs::path> pages() {
   return files;
 }
 
-/// The fenced xml blocks of a page that hold a whole stack.
-std::vector<std::string> stacks(const fs::path& page) {
+/// The fenced blocks of that language on a page, from the line that begins with `after`.
+std::vector<std::string> blocks(const fs::path& page, const std::string& language, const std::string& after = "") {
   std::vector<std::string> found;
   std::ifstream in(page);
   std::string block;
-  bool inside = false;
+  bool inside = false, begun = after.empty();
   for (std::string line; std::getline(in, line);) {
-    if (!inside && line == "```xml") {
+    begun = begun || line.rfind(after, 0) == 0;
+    if (begun && !inside && line == "```" + language) {
       inside = true;
       block.clear();
     } else if (inside && line == "```") {
       inside = false;
-      if (block.rfind("<stack", 0) == 0) found.push_back(block);
+      found.push_back(block);
     } else if (inside) {
       block += line + "\n";
     }
@@ -42,18 +46,105 @@ std::vector<std::string> stacks(const fs::path& page) {
   return found;
 }
 
-TEST(Docs, EveryStackShownPassesCheck) {
+/// The blocks that hold a whole stack of elements that are always there.
+std::vector<std::string> stacks(const fs::path& page) {
+  std::vector<std::string> found;
+  for (const std::string& block : blocks(page, "xml")) {
+    if (block.rfind("<stack", 0) == 0 && block.find("<plugin") == std::string::npos) found.push_back(block);
+  }
+  return found;
+}
+
+/// Runs a shell command; what it says goes into `output`.
+int shell(const std::string& command, std::string* output = nullptr) {
+  std::string said;
+  FILE* pipe = ::popen(("(" + command + ") 2>&1").c_str(), "r");
+  if (!pipe) return -1;
+  char part[4096];
+  for (size_t count; (count = std::fread(part, 1, sizeof part, pipe)) > 0;) said.append(part, count);
+  if (output) *output = said;
+  return WEXITSTATUS(::pclose(pipe));
+}
+
+const std::string kProgram = TACTUS_BINARY_DIR "/bin/tactus";
+
+TEST(Docs, EveryStackShownPassesCheckAndReadsBackResolved) {
+  const tactus::testing::TemporaryFolder folder;
   int checked = 0;
   for (const fs::path& page : pages()) {
     for (const std::string& stack : stacks(page)) {
-      const fs::path file = fs::path(testing::TempDir()) / ("docs_stack_" + std::to_string(checked++) + ".xml");
-      std::ofstream(file) << stack;
-      const std::string command = std::string(TACTUS_BINARY_DIR "/bin/tactus check ") + file.string();
-      const int status = std::system(command.c_str());
-      EXPECT_EQ(WEXITSTATUS(status), 0) << page << ":\n" << stack;
+      const std::string name = std::to_string(checked++), file = folder.write(name + ".xml", stack);
+      std::string said;
+      EXPECT_EQ(shell(kProgram + " check " + file, &said), 0) << page << ":\n" << said;
+      EXPECT_EQ(shell(kProgram + " run " + file + " --duration 0.01 --out " + folder.file(name), &said), 0) << said;
+      EXPECT_EQ(shell(kProgram + " check " + folder.file(name) + "/stack.resolved.xml", &said), 0) << page << ":\n" << said;
+      EXPECT_EQ(shell(kProgram + " golden record " + folder.file("case" + name) + " --stack " + file +
+                          " --duration 0.01 --reason 'does it read back?'", &said), 0) << page << ":\n" << said;
     }
   }
   EXPECT_GE(checked, 2);
+}
+
+/// README's first stack settles: no torque is cut, and all back ends that it names agree.
+TEST(Docs, TheFirstStackIsStable) {
+  const tactus::testing::TemporaryFolder folder;
+  std::string stack = stacks(fs::path(TACTUS_SOURCE_DIR) / "README.md").at(0);
+  // A rest that is not the start: a stack that starts where it wants to be would show little.
+  const std::string rest = "stiffness=\"1\" damping=\"0.02\"/>";
+  ASSERT_NE(stack.find(rest), std::string::npos);
+  stack.replace(stack.find(rest), rest.size(),
+                "stiffness=\"1\" damping=\"0.02\" q=\"0 -0.6 0 1.6 0 -0.4 0  0 0.3 0.3 0.3  0 0.3 0.3 0.3  0 0.3 0.3 0.3  "
+                "0.3 1.1 0.1 0.1\"/>");
+  const std::string file = folder.write("first.xml", stack);
+  for (const std::string back_end : {"null-space", "qp/nlopt"}) {
+    const std::string run = folder.file(back_end.substr(0, 2));
+    std::string said;
+    ASSERT_EQ(shell(kProgram + " run " + file + " --backend " + back_end + " --out " + run, &said), 0) << said;
+    EXPECT_NE(said.find("fallback 0, infeasible 0, limited 0\n"), std::string::npos) << said;
+    const auto log = tactus::runtime::CsvTable::read(run + "/log.csv");
+    EXPECT_LT(log.numbers("task/palm/error").back(), 1e-4) << back_end;
+    EXPECT_LT(log.numbers("task/rest/error").back(), 5e-3) << back_end;
+  }
+}
+
+/// The plugin of the manual, made as the manual says from `tactus_dir`, used by `program`.
+void makeAndUsePlugin(const std::string& tactus_dir, const std::string& program) {
+  const fs::path manual = fs::path(TACTUS_SOURCE_DIR) / "docs/manual.md";
+  const std::string section = "### Write a task plugin";
+  const tactus::testing::TemporaryFolder folder;
+  folder.write("wiggle.cc", blocks(manual, "cpp", section).at(0));
+  folder.write("CMakeLists.txt", blocks(manual, "cmake", section).at(0));
+  const std::string stack = folder.write("wiggle.xml", blocks(manual, "xml", section).at(0));
+  const std::string build = folder.file("build");
+  std::string said;
+  ASSERT_EQ(shell("cmake -S " + folder.path() + " -B " + build + " -DCMAKE_BUILD_TYPE=Release -DTactus_DIR=" + tactus_dir +
+                  " && cmake --build " + build, &said), 0) << said;
+
+  EXPECT_EQ(shell(program + " run " + stack, &said), 4) << "without the plugin:\n" << said;
+  EXPECT_NE(said.find("the plugin 'acme' cannot be loaded"), std::string::npos) << said;
+  ASSERT_EQ(shell(program + " run " + stack + " --plugin " + build + "/acme.so --out " + folder.file("run"), &said), 0)
+      << said;
+  const auto log = tactus::runtime::CsvTable::read(folder.file("run/log.csv"));
+  const std::vector<double> error = log.numbers("task/shoulder/error");
+  EXPECT_GT(error[20], 0);
+  EXPECT_LT(*std::max_element(error.begin(), error.end()), 0.2);
+  EXPECT_EQ(shell("TACTUS_PLUGIN_PATH=" + build + " " + program + " check " + stack, &said), 0) << said;
+  EXPECT_EQ(shell(program + " explain acme.wiggle --plugin " + build + "/acme.so", &said), 0) << said;
+  EXPECT_NE(said.find("amplitude: number; rad; ≥ 0; default 0.1"), std::string::npos) << said;
+}
+
+TEST(Docs, ThePluginOfTheManualIsMadeFromTheBuildTree) { makeAndUsePlugin(TACTUS_BINARY_DIR, kProgram); }
+
+TEST(Docs, ThePluginOfTheManualIsMadeFromAnInstalledTactus) {
+  const tactus::testing::TemporaryFolder prefix;
+  std::string said;
+  ASSERT_EQ(shell("cmake --install " TACTUS_BINARY_DIR " --prefix " + prefix.path(), &said), 0) << said;
+  std::string package;
+  for (const auto& entry : fs::recursive_directory_iterator(prefix.path())) {
+    if (entry.path().filename() == "TactusConfig.cmake") package = entry.path().parent_path().string();
+  }
+  ASSERT_FALSE(package.empty()) << said;
+  makeAndUsePlugin(package, prefix.file("bin/tactus"));
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ void addSolve(CLI::App& program, Context& context);
 void addDynamics(CLI::App& program, Context& context);
 void addGolden(CLI::App& program, Context& context);
 void addPlugins(CLI::App& program, Context& context);
+void addExplain(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
 
 }  // namespace tactus::app

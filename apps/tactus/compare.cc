@@ -67,6 +67,9 @@ ordered_json closedLoop(Session& session, const std::string& label, const std::v
   observers.insert(observers.end(), more.begin(), more.end());
   const runtime::LoopResult result = session.run(observers, stop);
 
+  for (const std::string& warning : session.warnings()) std::cerr << label << ": warning: " << warning << "\n";
+  if (result.ending == runtime::Ending::tick_error) std::rethrow_exception(result.error);
+
   const runtime::RunStatistics& statistics = session.statistics();
   ordered_json metrics = ordered_json::object();
   for (const control::Metric& metric : session.metrics()) metrics[metric.name] = metric.value;
@@ -79,6 +82,7 @@ ordered_json closedLoop(Session& session, const std::string& label, const std::v
           {"limited", statistics.limited},
           {"lost_rank", statistics.lost_rank},
           {"kkt_max", kktToJson(statistics.has_kkt, statistics.kkt_max)},
+          {"warnings", session.warnings()},
           {"metrics", metrics},
           {"task_errors", errors.means()}};
 }
@@ -142,7 +146,7 @@ std::string comparisonTable(const ordered_json& comparison) {
   table.row("× real time", "/closed_loop/realtime_factor");
   table.row("tick, median (µs)", "/closed_loop/tick_us/median");
   table.row("tick, p99 (µs)", "/closed_loop/tick_us/p99");
-  for (const char* count : {"fallbacks", "infeasible", "limited", "lost_rank"}) {
+  for (const char* count : {"fallbacks", "infeasible", "limited"}) {
     table.row(count, std::string("/closed_loop/") + count);
   }
   table.row("KKT stationarity, max", "/closed_loop/kkt_max/stationarity");
@@ -177,7 +181,9 @@ int compare(const CompareArguments& arguments, bool json) {
     if (back_ends.empty()) sampling.push_back(&sampler);
     back_ends.push_back({{"backend", label}, {"closed_loop", closedLoop(session, label, sampling, interrupt.stop())}});
     if (interrupt.stop()) throw Interrupted();
-    if (back_ends.back()["closed_loop"]["status"] != "done") code = exit_numerical;
+    if (back_ends.back()["closed_loop"]["status"] != "done" || !session.statistics().unusableTasks().empty()) {
+      code = exit_numerical;
+    }
   }
   Answers reference;
   for (size_t i = 0; i < labels.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "apps/tactus/interrupt.h"
+#include "framework/control/controller.h"
 #include "framework/dynamics/model.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/plant.h"
@@ -58,6 +59,8 @@ int reportErrors(const Context& context) {
   } catch (const Interrupted& error) {
     return say(context, exit_interrupted, error.what());
   } catch (const runtime::PluginError& error) {
+    return say(context, exit_plugin, error.what());
+  } catch (const control::TickError& error) {
     return say(context, exit_plugin, error.what());
   } catch (const dynamics::ModelError& error) {
     const description::Place& place = error.place;

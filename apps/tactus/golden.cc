@@ -1,5 +1,7 @@
 #include "framework/runtime/golden.h"
 
+#include <fcntl.h>
+#include <stdio.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -26,10 +28,11 @@ struct GoldenArguments : StackArguments {
   std::string keep;
 };
 
-/// A folder of its own in the system's place for such, taken away at the end.
+/// A new folder whose name begins with `stem`, taken away at the end.
 class TemporaryFolder {
  public:
-  TemporaryFolder() : path((fs::temp_directory_path() / "tactus-golden-XXXXXX").string()) {
+  explicit TemporaryFolder(const fs::path& stem = fs::temp_directory_path() / "tactus-golden-")
+      : path(stem.string() + "XXXXXX") {
     if (!::mkdtemp(path.data())) throw runtime::FileError(path, "cannot be created", errno);
   }
   ~TemporaryFolder() {
@@ -40,6 +43,23 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
   std::string path;
 };
+
+/// Puts the new folder in the place of the case in one step.  What stood there is left in the new folder's place.
+void exchange(const std::string& fresh, const std::string& folder) {
+  if (!fs::exists(folder)) return fs::rename(fresh, folder);
+  if (::renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, folder.c_str(), RENAME_EXCHANGE) == 0) return;
+  if (errno != EINVAL && errno != ENOSYS) throw runtime::FileError(folder, "cannot be replaced", errno);
+  // A file system without exchange: two steps, and the first is taken back when the second fails.
+  const std::string old = fresh + ".old";
+  fs::rename(folder, old);
+  try {
+    fs::rename(fresh, folder);
+  } catch (...) {
+    fs::rename(old, folder);
+    throw;
+  }
+  fs::rename(old, fresh);
+}
 
 /// A case is a folder, or the name of one in tests/golden.
 fs::path caseFolder(const std::string& name) {
@@ -98,40 +118,77 @@ std::string portableStack(const dsl::Stack& stack, const fs::path& folder) {
 }
 
 /// Runs the case's stack and returns its log in `folder`.
-std::string runInto(const std::string& folder, Session& session) {
+std::string runInto(const std::string& folder, Session& session, const Interrupt& interrupt) {
   const auto recorder = session.recordInto(folder);
-  const Interrupt interrupt;
   const runtime::LoopResult result = session.run({recorder.get()}, interrupt.stop());
-  recorder->close();
-  if (result.ending == runtime::Ending::plant_error) throw runtime::PlantError(result.message);
+  if (result.error) std::rethrow_exception(result.error);
   if (result.ending == runtime::Ending::interrupted) throw Interrupted();
+  recorder->close();
   return folder + "/log.csv";
+}
+
+/// A run in which tasks lost their numbers is no example for later ones.
+void refuseUnusable(const Session& session) {
+  if (!session.statistics().unusableTasks().empty()) {
+    throw runtime::PlantError(session.warnings().front() + "; such a run is not recorded");
+  }
+}
+
+/// Takes over what is not recorded: tolerances, a robot that stands in the case, notes.
+void keepOtherFiles(const fs::path& folder, const fs::path& made) {
+  fs::permissions(made, fs::exists(folder) ? fs::status(folder).permissions() : fs::perms(0755));
+  if (!fs::exists(folder)) return;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "stack.xml" || name == "expected.csv" || name == "provenance.json") continue;
+    fs::copy(entry.path(), made / name, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
+  }
+}
+
+/// Refuses to put a case where something else stands.
+void checkPlace(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw runtime::FileError(folder.string(), "is not a folder");
+  if (!fs::is_empty(folder) && !fs::exists(folder / "stack.xml")) {
+    throw runtime::FileError(folder.string(), "holds files that are not of a golden case; give a new folder");
+  }
 }
 
 int record(const GoldenArguments& arguments) {
   if (arguments.reason.find_first_not_of(" \t\n") == std::string::npos) {
     throw UsageError("golden record: --reason must say why the golden values are new");
   }
-  const fs::path folder = caseFolder(arguments.cases.front());
-  const std::string stack_file = (folder / "stack.xml").string();
+  fs::path folder = fs::weakly_canonical(fs::absolute(caseFolder(arguments.cases.front())));
+  if (!folder.has_filename()) folder = folder.parent_path();       // "case/"
+  const Interrupt interrupt;
   Program program(arguments.plugins);
   StackOptions source = arguments.stack;
-  if (source.file.empty()) source.file = stack_file;
+  if (source.file.empty()) source.file = (folder / "stack.xml").string();
   if (!fs::exists(source.file) && arguments.stack.file.empty()) {
     throw UsageError("golden record: a new case needs --stack FILE");
   }
-  // The case keeps the stack with everything resolved, so that it stands alone.
+  checkPlace(folder);
   const dsl::Stack stack = readAloud(program, source);
-  fs::create_directories(folder);
+
+  // The case is made beside its place and put there whole: whatever fails before leaves the old one as it was.
+  fs::create_directories(folder.parent_path());
+  const TemporaryFolder fresh(folder.parent_path() / ("." + folder.filename().string() + "-"));
+  const fs::path made = fresh.path;
+  keepOtherFiles(folder, made);
+  // The case keeps the stack with everything resolved, so that it stands alone.
+  const std::string stack_file = (made / "stack.xml").string();
   runtime::writeFile(stack_file, portableStack(stack, folder));
   Session session(readAloud(program, {stack_file, {}, {}, {}, {}}), program.registry());
-  const TemporaryFolder temporary;
-  const std::string log = runInto(temporary.path, session);
-  runtime::writeFile((folder / "expected.csv").string(), runtime::readFile(log));
-  if (!fs::exists(folder / "tolerances.xml")) {
-    runtime::writeFile((folder / "tolerances.xml").string(), defaultTolerances());
+  const TemporaryFolder run;
+  const std::string log = runInto(run.path, session, interrupt);
+  refuseUnusable(session);
+  runtime::writeFile((made / "expected.csv").string(), runtime::readFile(log));
+  if (!fs::exists(made / "tolerances.xml")) {
+    runtime::writeFile((made / "tolerances.xml").string(), defaultTolerances());
   }
-  writeJson((folder / "provenance.json").string(), provenance(session, arguments.reason, program));
+  writeJson((made / "provenance.json").string(), provenance(session, arguments.reason, program));
+  if (interrupt.stop()) throw Interrupted();
+  exchange(made.string(), folder.string());
   std::cerr << "recorded " << folder.string() << "\n";
   return exit_done;
 }
@@ -142,7 +199,8 @@ int verifyCase(Program& program, const std::string& name, const std::string& kee
   const auto tolerances = readTolerances((folder / "tolerances.xml").string());
   Session session(readAloud(program, {(folder / "stack.xml").string(), {}, {}, {}, {}}), program.registry());
   const TemporaryFolder temporary;
-  const std::string log = runInto(temporary.path, session);
+  const Interrupt interrupt;
+  const std::string log = runInto(temporary.path, session, interrupt);
   if (!keep.empty()) {
     fs::create_directories(keep);
     runtime::writeFile(keep + "/" + folder.filename().string() + ".csv", runtime::readFile(log));

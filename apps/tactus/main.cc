@@ -3,6 +3,7 @@
 #include "apps/tactus/command.h"
 #include "apps/tactus/errors.h"
 #include "dsl/nearest_name.h"
+#include "framework/runtime/version.h"
 
 namespace tactus::app {
 namespace {
@@ -72,6 +73,7 @@ int runCommand(int argc, char** argv) {
   addGolden(app, context);
   addPlugins(app, context);
   addReport(app, context);
+  addExplain(app, context);
   // A misspelled command would otherwise be reported as a missing one.  Commands inherit this when they are added, so
   // it comes after them: what they do not know stays an error.
   app.require_subcommand(0, 1);
@@ -99,4 +101,10 @@ int runCommand(int argc, char** argv) {
 }  // namespace
 }  // namespace tactus::app
 
-int main(int argc, char** argv) { return tactus::app::runCommand(argc, argv); }
+int main(int argc, char** argv) {
+  const int code = tactus::app::runCommand(argc, argv);
+  // Data that did not arrive is a failure, whatever was done for it.
+  if (std::cout.flush()) return code;
+  std::cerr << "tactus: standard output could not be written\n";
+  return code == tactus::app::exit_done ? tactus::app::exit_files : code;
+}

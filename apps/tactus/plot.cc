@@ -28,18 +28,27 @@ std::string fixed(double value, int decimals) {
           std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::fixed, decimals).ptr};
 }
 
+/// What is larger, or not finite, has no place on an axis: a gap is left.
+constexpr double largest_drawn = 1e12;
+bool isDrawn(double value) { return std::abs(value) <= largest_drawn; }
+
 struct Range {
   double lower = INFINITY, upper = -INFINITY;
   void add(double value) {
-    if (!std::isfinite(value)) return;
+    if (!isDrawn(value)) return;
     lower = std::min(lower, value);
     upper = std::max(upper, value);
   }
   double length() const { return upper - lower; }
-  /// Something to draw even when there is no value, or only one.
+  /// Something to draw even when there is no value, or only one, or when all are one up to rounding.
   void makeDrawable() {
     if (!(lower <= upper)) *this = {0, 1};
-    if (length() <= 0) *this = {lower - 0.5, upper + 0.5};
+    const double least = std::max(1e-12, 1e-9 * std::max(std::abs(lower), std::abs(upper)));
+    if (length() <= 0) {
+      *this = {lower - std::max(0.5, least), upper + std::max(0.5, least)};
+    } else if (length() < least) {
+      *this = {lower - least / 2, upper + least / 2};
+    }
   }
   void widen(double fraction) { *this = {lower - fraction * length(), upper + fraction * length()}; }
 };
@@ -131,7 +140,7 @@ std::string path(const Line& line, const Frame& frame) {
   std::string d;
   bool pen_down = false;
   for (size_t i = 0; i < line.x.size(); ++i) {
-    if (!std::isfinite(line.y[i])) {
+    if (!isDrawn(line.y[i]) || !isDrawn(line.x[i])) {
       pen_down = false;
       continue;
     }
@@ -220,7 +229,7 @@ std::string draw(const LinePlot& plot, const Box& box) {
     svg += "<path d='M" + px(key) + " " + px(box.y + 16) + "h20' fill='none' " + stroke + "/><text x='" + px(key + 25) +
            "' y='" + px(box.y + 20) + "' fill='#333'>" + escaped(label) + "</text>\n";
   };
-  if (plot.wanted) {
+  if (plot.wanted && isDrawn(*plot.wanted)) {
     const std::string stroke = "stroke='#444' stroke-width='1.4' stroke-dasharray='6 4'";
     svg += "<path d='M" + px(frame.area().x) + " " + px(frame.px_y(*plot.wanted)) + "h" + px(frame.area().width) +
            "' fill='none' " + stroke + "/>\n";
@@ -251,6 +260,7 @@ std::string draw(const PointPlot& plot, const Box& box) {
   std::array<std::string, colours> paths;
   std::set<std::pair<long, long>> covered[colours];
   for (size_t i = 0; i < plot.x.size(); ++i) {
+    if (!isDrawn(plot.x[i]) || !isDrawn(plot.y[i]) || !isDrawn(plot.value[i])) continue;
     const double fraction = plot.value_max > 0 ? plot.value[i] / plot.value_max : 0;
     const auto colour = static_cast<size_t>(std::clamp(fraction, 0.0, 1.0) * (colours - 1));
     const double at_x = frame.px_x(plot.x[i]), at_y = frame.px_y(plot.y[i]);
@@ -264,8 +274,15 @@ std::string draw(const PointPlot& plot, const Box& box) {
     svg += "<path d='" + paths[colour] + "' fill='none' stroke='" +
            viridis(static_cast<double>(colour) / (colours - 1)) + "' stroke-width='3.2' stroke-linecap='round'/>\n";
   }
-  for (const Marker& marker : plot.markers) svg += drawMarker(marker, frame);
+  for (const Marker& marker : plot.markers) {
+    if (isDrawn(marker.x) && isDrawn(marker.y)) svg += drawMarker(marker, frame);
+  }
   return svg;
+}
+
+std::string note(const std::string& text, const Box& box) {
+  return "<text x='" + px(box.x + box.width / 2) + "' y='" + px(box.y + box.height / 2) +
+         "' text-anchor='middle' fill='#555'>" + escaped(text) + "</text>\n";
 }
 
 std::string drawColourBar(const std::string& label, double value_max, const Box& box) {

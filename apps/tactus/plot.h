@@ -49,6 +49,8 @@ struct PointPlot {
 
 std::string draw(const LinePlot& plot, const Box& box);
 std::string draw(const PointPlot& plot, const Box& box);
+/// A sentence instead of a plot that has nothing to show.
+std::string note(const std::string& text, const Box& box);
 /// The colour scale of PointPlot from 0 to `value_max`.
 std::string drawColourBar(const std::string& label, double value_max, const Box& box);
 /// A whole SVG document of that size.

@@ -14,6 +14,7 @@ using nlohmann::ordered_json;
 
 int list(const std::vector<std::string>& paths, bool json) {
   Program program(paths);
+  const std::vector<std::string> refused = program.loadFolders();
   ordered_json plugins = ordered_json::array();
   std::vector<std::vector<std::string>> rows{{"plugin", "version", "licence", "elements", "library"}};
   for (const runtime::LoadedPlugin& plugin : program.plugins().loaded()) {
@@ -29,12 +30,13 @@ int list(const std::vector<std::string>& paths, bool json) {
     rows.push_back({plugin.name, plugin.version, plugin.licence, joined(plugin.elements), plugin.path});
   }
   if (json) {
-    std::cout << ordered_json{{"plugins", plugins}, {"searched", program.plugins().folders()}}.dump(2) << "\n";
+    std::cout << ordered_json{{"plugins", plugins}, {"refused", refused}, {"searched", program.plugins().folders()}}.dump(2) << "\n";
   } else {
     std::cout << textTable(rows);
     std::cerr << "searched: " << joined(program.plugins().folders()) << "\n";
   }
-  return exit_done;
+  for (const std::string& refusal : refused) std::cerr << "refused: " << refusal << "\n";
+  return refused.empty() ? exit_done : exit_plugin;
 }
 
 }  // namespace
@@ -44,10 +46,16 @@ void addPlugins(CLI::App& program, Context& context) {
   CLI::App* list_command = command->add_subcommand("list", "Every loaded plugin with its elements and its library");
   const auto paths = std::make_shared<std::vector<std::string>>();
   declarePlugins(*list_command, *paths);
-  list_command->add_flag("--json", context.json, "{plugins: [{name, version, licence, path, elements, …}], searched}");
+  list_command->add_flag("--json", context.json, "{plugins: [{name, version, licence, path, elements, …}], refused, searched}");
   command->require_subcommand(0, 1);
-  command->footer("Examples:\n  tactus plugins list\n  tactus plugins list --plugin build/acme.so --json");
-  list_command->footer("Examples:\n  tactus plugins list\n  tactus plugins list --plugin build/acme.so --json");
+  constexpr const char* examples =
+      R"(Exit code 4 when a library of a searched folder is refused.
+
+Examples:
+  tactus plugins list
+  tactus plugins list --plugin build/acme.so --json)";
+  command->footer(examples);
+  list_command->footer(examples);
   list_command->callback([=, &context] { context.action = [=, &context] { return list(*paths, context.json); }; });
 }
 

@@ -1,12 +1,14 @@
 #include "apps/tactus/program.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "apps/tactus/command.h"
 #include "apps/tactus/text.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/program_path.h"
+#include "sim/simbody_plant.h"
 #include "tasks/register_tasks.h"
 
 namespace tactus::app {
@@ -48,13 +50,33 @@ std::map<std::string, std::string> parseSettings(const std::vector<std::string>&
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& plugins) : plugins_(registry_, pluginFolders(plugins)) {
+Program::Program(const std::vector<std::string>& plugins) : plugins_(registry_, pluginFolders(plugins), runtime::shippedPluginFolder()) {
   dsl::addStructureElements(registry_);
   tasks::registerBuiltIns(registry_);
   for (const std::string& path : plugins) {
     if (!std::filesystem::is_directory(path)) plugins_.loadFile(path);
   }
   plugins_.loadFolder(runtime::shippedPluginFolder());
+}
+
+std::vector<std::string> Program::loadFolders() {
+  std::vector<std::string> refusals;
+  for (const std::string& folder : plugins_.folders()) {
+    std::error_code error;
+    std::vector<std::filesystem::path> libraries;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+      if (entry.path().extension() == ".so") libraries.push_back(entry.path());
+    }
+    std::sort(libraries.begin(), libraries.end());
+    for (const std::filesystem::path& library : libraries) {
+      try {
+        plugins_.loadFile(library.string());
+      } catch (const runtime::PluginError& refusal) {
+        refusals.emplace_back(refusal.what());
+      }
+    }
+  }
+  return refusals;
 }
 
 std::vector<std::string> Program::modelPath() const {
@@ -92,6 +114,7 @@ dsl::Stack Program::read(const StackOptions& options, std::vector<dsl::Diagnosti
   dsl::ReadOptions read;
   read.set = parseSettings(options.set);
   read.model_path = modelPath();
+  read.plant_step = sim::PlantOptions().step;
   read.load_plugin = [this](const std::string& name) { plugins_.loadNamed(name); };
   if (!options.back_end.empty()) {
     const BackEndChoice choice = backEndChoice(options.back_end);
@@ -99,7 +122,14 @@ dsl::Stack Program::read(const StackOptions& options, std::vector<dsl::Diagnosti
     read.backend_options = choice.options;
   }
   dsl::Stack stack = dsl::readStack(options.file, registry_, read, warnings);
-  if (options.duration) stack.run.duration = *options.duration;
+  if (options.duration) {
+    const double rate = stack.controller.values.real("rate");
+    if (std::lround(*options.duration * rate) < 1) {
+      throw UsageError("--duration " + rounded(*options.duration) + " is shorter than one tick of " + rounded(1 / rate) +
+                       " s");
+    }
+    stack.run.duration = *options.duration;
+  }
   if (options.seed) stack.run.seed = *options.seed;
   return stack;
 }

@@ -1,10 +1,12 @@
 #include "apps/tactus/report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "apps/tactus/command.h"
+#include "apps/tactus/json_place.h"
 #include "apps/tactus/plot.h"
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/targets.h"
@@ -23,23 +25,36 @@ constexpr const char* blue = "#1f6fb4";
 constexpr const char* orange = "#e07b1a";
 constexpr const char* grey = "#9a9a94";
 
-/// What the report is made of.
+/// What the report is made of.  A run that was cut off may have left no tables.
 struct RunData {
-  ordered_json run;
+  std::string file;
+  ordered_json json;
+  bool cut_off = false;
   CsvTable log;
   CsvTable touched;
+
+  JsonPlace run() const { return {file, json}; }
 };
 
 RunData readRunFolder(const std::string& folder) {
-  ordered_json run = ordered_json::parse(runtime::readFile(folder + "/run.json"), nullptr, false);
-  if (!run.is_object() || run.value("format", "") != run_format) {
-    throw runtime::FileError(folder + "/run.json", std::string("is not of the format ") + run_format);
+  RunData data;
+  data.file = folder + "/run.json";
+  data.json = readJson(data.file);
+  if (data.run().at("format").text("") != run_format) {
+    throw runtime::FileError(data.file, std::string("is not of the format ") + run_format);
   }
-  return {std::move(run), CsvTable::read(folder + "/log.csv"), CsvTable::read(folder + "/touched_points.csv")};
+  data.cut_off = data.run().at("status").text() == status_running;
+  const auto read = [&](const std::string& name) {
+    const std::string path = folder + "/" + name;
+    return data.cut_off && !std::filesystem::exists(path) ? CsvTable() : CsvTable::read(path);
+  };
+  data.log = read("log.csv");
+  data.touched = read("touched_points.csv");
+  return data;
 }
 
 Line logLine(const CsvTable& log, const std::string& column, const std::string& label, const std::string& colour) {
-  return {label, colour, log.numbers(log.column("time")), log.numbers(log.column(column))};
+  return {label, colour, log.numbers("time"), log.numbers(column)};
 }
 
 std::string drawContactNumber(const RunData& data, const Box& box) {
@@ -53,11 +68,12 @@ std::string drawForces(const RunData& data, const Box& box) {
   plot.lines.push_back(logLine(data.log, "contact/undesired_max_N", "undesired, largest", grey));
   plot.lines.push_back(logLine(data.log, "contact/max_N", "desired, largest", orange));
   plot.lines.push_back(logLine(data.log, "contact/mean_N", "desired, mean", blue));
-  if (data.run.contains("wanted_force_N")) plot.wanted = data.run["wanted_force_N"].get<double>();
+  plot.wanted = data.run().at("wanted_force_N").number();
   return draw(plot, box);
 }
 
 std::string drawContacts(const RunData& data) {
+  if (data.log.rows() == 0) return svgDocument(1100, 60, note("No tick was logged.", {0, 0, 1100, 60}));
   return svgDocument(1100, 560, drawContactNumber(data, {0, 0, 1100, 240}) + drawForces(data, {0, 240, 1100, 320}));
 }
 
@@ -71,9 +87,9 @@ struct Cloud {
 
 Cloud touchedCloud(const CsvTable& touched) {
   Cloud cloud;
-  cloud.x = touched.numbers(touched.column("x"));
-  cloud.y = touched.numbers(touched.column("y"));
-  const std::vector<double> z = touched.numbers(touched.column("z"));
+  cloud.x = touched.numbers("x");
+  cloud.y = touched.numbers("y");
+  const std::vector<double> z = touched.numbers("z");
   if (z.empty()) return cloud;
   cloud.plane = runtime::percentile(z, 0.02);
   for (const double height : z) cloud.height_mm.push_back((height - cloud.plane) * 1000);
@@ -82,27 +98,30 @@ Cloud touchedCloud(const CsvTable& touched) {
 }
 
 /// Where features were found and where they really are, seen along one axis of the world.
-std::vector<Marker> featureMarkers(const ordered_json& run, int horizontal, int vertical, double plane) {
+std::vector<Marker> featureMarkers(const RunData& data, size_t horizontal, size_t vertical, double plane) {
   std::vector<Marker> markers;
-  const auto add = [&](const ordered_json& point, bool ring, const std::string& label) {
-    const double v = point[static_cast<size_t>(vertical)].get<double>();
-    markers.push_back(
-        {point[static_cast<size_t>(horizontal)].get<double>(), vertical == 2 ? (v - plane) * 1000 : v, ring, label});
+  const auto add = [&](const JsonPlace& point, bool ring, const std::string& label) {
+    if (!point.exists()) return;
+    std::vector<double> p_W;
+    for (const JsonPlace& coordinate : point.items()) p_W.push_back(coordinate.number().value_or(NAN));
+    p_W.resize(3, NAN);
+    markers.push_back({p_W[horizontal], vertical == 2 ? (p_W[2] - plane) * 1000 : p_W[vertical], ring, label});
   };
-  for (const ordered_json& feature : run["features"]) {
-    const std::string name = feature["name"].get<std::string>();
-    if (feature.contains("truth_W")) add(feature["truth_W"], true, name + ", true top");
-    if (feature.contains("position_W")) add(feature["position_W"], false, name + ", found");
+  for (const JsonPlace& feature : data.run().at("features").items()) {
+    const std::string name = feature.at("name").text();
+    add(feature.at("truth_W"), true, name + ", true top");
+    add(feature.at("position_W"), false, name + ", found");
   }
   return markers;
 }
 
 std::string drawTouchedPoints(const RunData& data) {
+  if (data.touched.rows() == 0) return svgDocument(1100, 60, note("Nothing was touched.", {0, 0, 1100, 60}));
   const Cloud cloud = touchedCloud(data.touched);
   const auto view = [&](const std::string& title, const std::string& x_label, const std::string& y_label,
-                        const std::vector<double>& x, const std::vector<double>& y, int horizontal, int vertical) {
+                        const std::vector<double>& x, const std::vector<double>& y, size_t horizontal, size_t vertical) {
     return PointPlot{title,           x_label,          y_label, x, y, cloud.height_mm, cloud.height_max, vertical != 2,
-                     featureMarkers(data.run, horizontal, vertical, cloud.plane)};
+                     featureMarkers(data, horizontal, vertical, cloud.plane)};
   };
   const std::string above = "height (mm)";
   return svgDocument(
@@ -130,41 +149,54 @@ std::string drawTaskErrors(const RunData& data) {
   return svgDocument(2 * width, height * ((count + 1) / 2), svg);
 }
 
-std::string number(const ordered_json& value) { return value.is_null() ? "–" : rounded(value.get<double>()); }
+std::string number(const JsonPlace& value, int digits = 4) { return rounded(value.number().value_or(NAN), digits); }
 
-std::string metricsTable(const ordered_json& run) {
-  std::string html = "<table><tr><th>metric</th><th>value</th><th>wanted</th><th></th></tr>\n";
-  for (const auto& [name, value] : run["metrics"].items()) {
+std::string metricsTable(const JsonPlace& run) {
+  const bool has_targets = !run.at("wanted").members().empty();
+  std::string html = std::string("<table><tr><th>metric</th><th>value</th>") +
+                     (has_targets ? "<th>wanted</th><th></th>" : "") + "</tr>\n";
+  const auto addRow = [&](const std::string& name, const JsonPlace& value) {
     html += "<tr><td>" + escaped(name) + "</td><td class='number'>" + number(value) + "</td>";
-    if (run["wanted"].contains(name)) {
-      const Target target = targetFromJson(name, run["wanted"][name]);
-      const bool met = !value.is_null() && target.metBy(value.get<double>());
+    if (const JsonPlace wanted = run.at("wanted").at(name); wanted.exists()) {
+      const Target target = targetFromJson(wanted);
+      const bool met = target.metBy(value.number().value_or(NAN));
       html += "<td class='number'>" + escaped(target.text()) + "</td><td class='" +
               (met ? std::string("met'>met") : std::string("missed'>missed")) + "</td>";
-    } else {
+    } else if (has_targets) {
       html += "<td></td><td></td>";
     }
     html += "</tr>\n";
-  }
+  };
+  for (const auto& [name, value] : run.at("metrics").members()) addRow(name, value);
   return html + "</table>\n";
 }
 
-std::string facts(const ordered_json& run) {
+std::string facts(const JsonPlace& run) {
+  const JsonPlace tick = run.at("tick_us"), ticks = run.at("ticks");
   std::vector<std::pair<std::string, std::string>> rows{
-      {"back end", run["backend"].get<std::string>()},
-      {"seed", std::to_string(run["seed"].get<std::uint64_t>())},
-      {"status", run["status"].get<std::string>()},
-      {"simulated",
-       number(run["duration_s"]) + " s, " + rounded(run["realtime_factor"].get<double>(), 3) + " × real time"},
-      {"tick", number(run["tick_us"]["median"]) + " µs median, " + number(run["tick_us"]["p99"]) + " µs p99"},
-      {"fallbacks", std::to_string(run["ticks"]["fallback"].get<long>())},
-      {"ticks with lost rank", std::to_string(run["ticks"]["lost_rank"].get<long>())}};
-  for (const auto& [name, value] : run["backend_options"].items()) rows.emplace_back(name, value.get<std::string>());
+      {"back end", run.at("backend").text()},
+      {"seed", number(run.at("seed"), 10)},
+      {"status", run.at("status").text()},
+      {"simulated", number(run.at("duration_s")) + " s, " + number(run.at("realtime_factor"), 3) + " × real time"},
+      {"tick", number(tick.at("median")) + " µs median, " + number(tick.at("p99")) + " µs p99"},
+      {"fallbacks", number(ticks.at("fallback"), 10)},
+      {"ticks with limited torque", number(ticks.at("limited"), 10)}};
+  for (const auto& [name, value] : run.at("backend_options").members()) rows.emplace_back(name, value.text());
   std::string html = "<table>\n";
   for (const auto& [name, value] : rows) {
     html += "<tr><td>" + escaped(name) + "</td><td>" + escaped(value) + "</td></tr>\n";
   }
   return html + "</table>\n";
+}
+
+/// What a reader must know before the figures.
+std::string warnings(const RunData& data) {
+  std::string html;
+  const auto add = [&](const std::string& text) { html += "<p class='missed'>" + escaped(text) + "</p>\n"; };
+  if (data.cut_off) add("This run was cut off, or is still going: what it had written is shown.");
+  if (data.run().at("message").exists()) add(data.run().at("message").text());
+  for (const JsonPlace& warning : data.run().at("warnings").items()) add(warning.text());
+  return html.empty() ? "" : "<section>" + html + "</section>\n";
 }
 
 constexpr const char* style = R"(
@@ -182,14 +214,15 @@ th, td { text-align: left; padding: 4px 14px 4px 0; border-bottom: 1px solid #ee
 )";
 
 std::string page(const RunData& data, const std::string& contacts, const std::string& touched) {
-  const std::string title = escaped(data.run["stack"].get<std::string>());
+  const std::string title = escaped(data.run().at("stack").text());
   std::string html = "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" + title +
                      "</title><style>" + style + "</style></head><body><main>\n<h1>" + title + "</h1>\n";
-  html += "<section class='columns'><div>" + metricsTable(data.run) + "</div><div>" + facts(data.run) +
+  html += warnings(data);
+  html += "<section class='columns'><div>" + metricsTable(data.run()) + "</div><div>" + facts(data.run()) +
           "</div></section>\n";
   html += "<section>" + contacts + "</section>\n";
   if (data.touched.rows() > 0) html += "<section>" + touched + "</section>\n";
-  html += "<section>" + drawTaskErrors(data) + "</section>\n";
+  if (data.log.rows() > 0) html += "<section>" + drawTaskErrors(data) + "</section>\n";
   return html + "</main></body></html>\n";
 }
 

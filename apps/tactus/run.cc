@@ -16,13 +16,47 @@ struct RunArguments : StackArguments {
   std::string out;
 };
 
-int exitCodeOf(runtime::Ending ending) {
+int exitCodeOf(const Session& session, runtime::Ending ending) {
   switch (ending) {
-    case runtime::Ending::done: return exit_done;
+    case runtime::Ending::done: return session.statistics().unusableTasks().empty() ? exit_done : exit_numerical;
     case runtime::Ending::interrupted: return exit_interrupted;
     case runtime::Ending::plant_error: return exit_numerical;
+    case runtime::Ending::tick_error: return exit_plugin;
+    case runtime::Ending::file_error: return exit_files;
   }
   return exit_numerical;
+}
+
+/// Runs the session into the folder.  A file that cannot be written ends the run; what was written stays.
+runtime::LoopResult runInto(const std::string& folder, Session& session, const std::atomic<bool>& stop) {
+  runtime::LoopResult result;
+  try {
+    runtime::writeFile(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
+    const auto recorder = session.recordInto(folder);
+    {
+      Progress progress(session.stack().run.duration);
+      result = session.run({recorder.get(), &progress}, stop);
+    }
+    if (result.ending != runtime::Ending::file_error) recorder->close();
+  } catch (const runtime::FileError& error) {
+    result.ending = runtime::Ending::file_error;
+    result.message = error.what();
+  }
+  return result;
+}
+
+/// Does what writes a file; says what went wrong and returns whether all is well.
+template <class Write>
+bool wrote(Write write) {
+  try {
+    write();
+    return true;
+  } catch (const runtime::FileError& error) {
+    std::cerr << "tactus run: " << error.what() << "\n";
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << "tactus run: " << error.path1().string() << ": " << error.code().message() << "\n";
+  }
+  return false;
 }
 
 int run(const RunArguments& arguments, bool json) {
@@ -31,19 +65,14 @@ int run(const RunArguments& arguments, bool json) {
   const std::string label = arguments.stack.back_end.empty() ? session.backEndName() : arguments.stack.back_end;
   const std::string folder = arguments.out.empty() ? defaultRunFolder(session.stack(), label) : arguments.out;
   claimRunFolder(folder, session);
-  runtime::writeFile(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
 
-  const auto recorder = session.recordInto(folder);
   const Interrupt interrupt;
-  runtime::LoopResult result;
-  {
-    Progress progress(session.stack().run.duration);
-    result = session.run({recorder.get(), &progress}, interrupt.stop());
-  }
-  recorder->close();
+  const runtime::LoopResult result = runInto(folder, session, interrupt.stop());
   const nlohmann::ordered_json description = describeRun(session, result);
-  writeJson(folder + "/run.json", description);
-  if (session.statistics().ticks() > 0) writeReport(folder);
+  const bool described = wrote([&] { writeJson(folder + "/run.json", description); });
+  // A log that could not be written is no ground for pictures; `tactus report` makes them of what there is.
+  const bool drawable = session.statistics().ticks() > 0 && result.ending != runtime::Ending::file_error;
+  const bool drawn = drawable && wrote([&] { writeReport(folder); });
 
   if (json) {
     std::cout << description.dump(2) << "\n";
@@ -51,8 +80,10 @@ int run(const RunArguments& arguments, bool json) {
     std::cout << summaryTable(description);
   }
   if (!result.message.empty()) std::cerr << "tactus run: " << result.message << "; the log is kept\n";
-  std::cerr << "run folder: " << folder << ", pictures in report.html\n";
-  return exitCodeOf(result.ending);
+  for (const std::string& warning : session.warnings()) std::cerr << "tactus run: warning: " << warning << "\n";
+  std::cerr << "run folder: " << folder << (drawn ? ", pictures in report.html\n" : "\n");
+  const int code = exitCodeOf(session, result.ending);
+  return code == exit_done && !(described && drawn == drawable) ? exit_files : code;
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "apps/tactus/run_folder.h"
 
+#include <cmath>
 #include <filesystem>
 
+#include "apps/tactus/json_place.h"
 #include "apps/tactus/targets.h"
 #include "apps/tactus/text.h"
 #include "apps/tactus/versions.h"
@@ -19,6 +21,8 @@ const char* statusText(runtime::Ending ending) {
     case runtime::Ending::done: return "done";
     case runtime::Ending::interrupted: return "interrupted";
     case runtime::Ending::plant_error: return "plant-error";
+    case runtime::Ending::tick_error: return "tick-error";
+    case runtime::Ending::file_error: return "file-error";
   }
   return "";
 }
@@ -27,7 +31,7 @@ bool isRunFolder(const fs::path& folder) {
   const fs::path file = folder / "run.json";
   if (!fs::exists(file)) return false;
   const ordered_json json = ordered_json::parse(runtime::readFile(file.string()), nullptr, false);
-  return json.is_object() && json.value("format", "") == run_format;
+  return json.is_object() && json.contains("format") && json["format"] == run_format;
 }
 
 ordered_json vectorToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
@@ -46,18 +50,27 @@ ordered_json describeFeatures(const Session& session) {
   return features;
 }
 
-ordered_json describeTargets(const Session& session, const std::vector<control::Metric>& metrics) {
+ordered_json describeTargets(const dsl::Stack& stack) {
   ordered_json json = ordered_json::object();
-  if (!session.wantedForce()) return json;
-  for (const Target& target : explorationTargets(metrics, *session.wantedForce(), session.desiredLinkCount())) {
-    json[target.metric] = toJson(target);
+  for (const dsl::TargetDescription& target : stack.run.targets) {
+    json[target.metric] = toJson(Target{target.lower, target.upper});
   }
   return json;
 }
 
 }  // namespace
 
-void writeJson(const std::string& path, const ordered_json& json) { runtime::writeFile(path, json.dump(2) + "\n"); }
+void writeJson(const std::string& path, const ordered_json& json) {
+  const std::string fresh = path + ".new";
+  try {
+    runtime::writeFile(fresh, json.dump(2) + "\n");
+    fs::rename(fresh, path);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(fresh, ignored);
+    throw;
+  }
+}
 
 std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_end_label) {
   std::string label = back_end_label;
@@ -77,7 +90,7 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   }
   for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg"})
     fs::remove(fs::path(folder) / picture);
-  writeJson(folder + "/run.json", describeStart(session, "running"));
+  writeJson(folder + "/run.json", describeStart(session, status_running));
 }
 
 ordered_json describeStart(const Session& session, const std::string& status) {
@@ -99,6 +112,7 @@ ordered_json describeRun(const Session& session, const runtime::LoopResult& resu
 
   ordered_json json = describeStart(session, statusText(result.ending));
   if (!result.message.empty()) json["message"] = result.message;
+  json["warnings"] = session.warnings();
   json["duration_s"] = result.simulated;
   json["wall_clock_s"] = result.wall_clock;
   json["realtime_factor"] = result.realtimeFactor();
@@ -117,7 +131,7 @@ ordered_json describeRun(const Session& session, const runtime::LoopResult& resu
   }
   json["metrics"] = ordered_json::object();
   for (const control::Metric& metric : metrics) json["metrics"][metric.name] = metric.value;
-  json["wanted"] = describeTargets(session, metrics);
+  json["wanted"] = describeTargets(session.stack());
   if (session.wantedForce()) json["wanted_force_N"] = *session.wantedForce();
   json["features"] = describeFeatures(session);
   json["versions"] = versions();
@@ -132,7 +146,7 @@ std::string summaryTable(const ordered_json& run) {
           rounded(run["realtime_factor"].get<double>(), 3) + " × real time; tick " + number(run["tick_us"]["median"]) +
           " µs median, " + number(run["tick_us"]["p99"]) + " µs p99, " + number(run["tick_us"]["p999"]) + " µs p99.9\n";
   text += "ticks: " + std::to_string(run["ticks"]["total"].get<long>());
-  for (const char* kind : {"fallback", "infeasible", "limited", "lost_rank"}) {
+  for (const char* kind : {"fallback", "infeasible", "limited"}) {
     text += std::string(", ") + kind + " " + std::to_string(run["ticks"][kind].get<long>());
   }
   text += "\n";
@@ -140,13 +154,19 @@ std::string summaryTable(const ordered_json& run) {
     text += "largest KKT residual: stationarity " + rounded(run["kkt_max"]["stationarity"].get<double>(), 3) +
             ", primal " + rounded(run["kkt_max"]["primal"].get<double>(), 3) + "\n";
   }
-  std::vector<std::vector<std::string>> rows{{"metric", "value", "wanted", ""}};
-  for (const auto& [name, value] : run["metrics"].items()) {
-    std::vector<std::string> row{name, number(value)};
-    if (run["wanted"].contains(name)) {
-      const Target target = targetFromJson(name, run["wanted"][name]);
+  if (const long fallbacks = run["ticks"]["fallback"].get<long>(); fallbacks > 0) {
+    text += "warning: " + std::to_string(fallbacks) + " ticks fell back, so these figures are not the stack's\n";
+  }
+  const JsonPlace place("run.json", run);
+  const JsonPlace wanted = place.at("wanted");
+  std::vector<std::vector<std::string>> rows{{"metric", "value"}};
+  if (!wanted.members().empty()) rows.front().insert(rows.front().end(), {"wanted", ""});
+  for (const auto& [name, value] : place.at("metrics").members()) {
+    std::vector<std::string> row{name, rounded(value.number().value_or(NAN))};
+    if (wanted.at(name).exists()) {
+      const Target target = targetFromJson(wanted.at(name));
       row.push_back(target.text());
-      row.push_back(!value.is_null() && target.metBy(value.get<double>()) ? "met" : "missed");
+      row.push_back(target.metBy(value.number().value_or(NAN)) ? "met" : "missed");
     }
     rows.push_back(std::move(row));
   }

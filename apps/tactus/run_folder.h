@@ -8,6 +8,7 @@
 namespace tactus::app {
 
 inline constexpr const char* run_format = "tactus-run/1";
+inline constexpr const char* status_running = "running";         ///< before the run's end, and for ever when it is killed
 
 /// runs/<stack>-<back end>-seed<N>
 std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_end_label);
@@ -25,7 +26,7 @@ nlohmann::ordered_json describeStart(const Session& session, const std::string& 
 /// What describeRun holds, as a table for people.
 std::string summaryTable(const nlohmann::ordered_json& run);
 
-/// Writes JSON with a final line end; throws FileError.
+/// Writes JSON with a final line end, all of it or nothing; throws FileError.
 void writeJson(const std::string& path, const nlohmann::ordered_json& json);
 
 }  // namespace tactus::app

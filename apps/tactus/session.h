@@ -39,6 +39,9 @@ class Session {
   /// Figures of the run so far: contacts, tasks, signals, features.
   std::vector<control::Metric> metrics() const;
 
+  /// What the reader of the figures must know: ticks that fell back and the task that made them, targets of no figure.
+  std::vector<std::string> warnings() const;
+
   const dsl::Stack& stack() const { return stack_; }
   control::Controller& controller() { return *controller_; }
   const runtime::RunStatistics& statistics() const { return statistics_; }
@@ -46,7 +49,6 @@ class Session {
   std::string backEndName() const;
   /// The force that the first contact-force task wants, N.
   std::optional<double> wantedForce() const;
-  int desiredLinkCount() const { return static_cast<int>(desiredLinks().size()); }
 
  private:
   /// The value behind a port of that type and name; null when the signal's element has none.

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <iostream>
 
+#include "apps/tactus/text.h"
+#include "dsl/read_stack.h"
+
 namespace tactus::app {
 
 CLI::Validator positive() {
@@ -12,6 +15,28 @@ CLI::Validator positive() {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
     return number && value > 0 ? "" : "'" + text + "' is not a number greater than 0";
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator simulatedTime() {
+  const auto check = [](std::string& text) -> std::string {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool number = error == std::errc() && end == text.data() + text.size();
+    return number && value > 0 && value <= dsl::longest_run
+               ? ""
+               : "'" + text + "' is not a number greater than 0 and at most " + rounded(dsl::longest_run);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator seed() {
+  const auto check = [](std::string& text) -> std::string {
+    std::int32_t value = 0;                                        // as far as a stack's seed reaches
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool number = error == std::errc() && end == text.data() + text.size();
+    return number && value >= 0 ? "" : "'" + text + "' is not a whole number from 0 to 2147483647";
   };
   return CLI::Validator(check, "");
 }
@@ -25,8 +50,10 @@ void declarePlugins(CLI::App& command, std::vector<std::string>& plugins) {
 void StackArguments::declare(CLI::App& command) {
   command.add_option("--duration", stack.duration, "Simulated time; the stack's own without it")
       ->type_name("SECONDS")
-      ->check(positive());
-  command.add_option("--seed", stack.seed, "Seed of the scene's jitter; the stack's own without it")->type_name("N");
+      ->check(simulatedTime());
+  command.add_option("--seed", stack.seed, "Seed of the scene's jitter; the stack's own without it")
+      ->type_name("N")
+      ->check(seed());
   command.add_option("--set", stack.set, "Give a <parameter> of the stack another value")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);

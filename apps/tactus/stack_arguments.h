@@ -18,6 +18,12 @@ struct StackArguments {
 /// Accepts numbers greater than 0.
 CLI::Validator positive();
 
+/// Accepts a simulated time, s.
+CLI::Validator simulatedTime();
+
+/// Accepts a seed.
+CLI::Validator seed();
+
 /// Declares --plugin.
 void declarePlugins(CLI::App& command, std::vector<std::string>& plugins);
 

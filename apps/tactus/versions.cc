@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "framework/runtime/version.h"
+
 namespace tactus::app {
 
 nlohmann::ordered_json versions() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "framework/control/tick_problem.h"
 #include "framework/control/tick_solution.h"
 
@@ -12,6 +14,8 @@ struct Abilities {
   bool torque_limits = false;
   bool force_bounds = false;
   bool friction_cones = false;
+  bool strict_first_level = false;                                 ///< the first level is strict even without strict_levels
+  std::string why_not_strict = {};                                 ///< said where a level asks to be strict and is not
 };
 
 /// Turns a tick problem into a torque.
@@ -28,7 +32,7 @@ class BackEnd {
   void solve(const TickProblem& problem, TickSolution& solution) { doSolve(problem, solution); }
 
  protected:
-  explicit BackEnd(Abilities abilities) : abilities_(abilities) {}
+  explicit BackEnd(Abilities abilities) : abilities_(std::move(abilities)) {}
 
  private:
   virtual void doPrepare(const TickProblem& shape) = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,18 @@ struct Level {
   std::vector<NamedTask> tasks;
 };
 
+/// A task, signal or back end that threw, or broke its promise, in a tick; the message names it and the time.
+class TickError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// What a tick did besides its torque.
 struct TickRecord {
   Status status = Status::ok;
-  bool fallback = false;                                           ///< the back end failed; the last safe torque was kept
-  bool limited = false;                                            ///< the torque was cut to the actuators' limits
+  bool fallback = false;                                           ///< the back end failed: its fallback, or b + g alone, was held
+  bool limited = false;                                            ///< the torque was scaled or cut into the actuators' limits
+  const std::string* unusable_task = nullptr;                      ///< whose rows made the tick fall back; lives as long as the controller
 };
 
 /// The compiled stack: signals in dependency order, levels of tasks, one back end.
@@ -43,6 +51,7 @@ class Controller {
              const Eigen::Vector3d& gravity_W);
 
   /// The torque to hold until the next tick, N m, b + g included, within the actuators' limits, always finite.
+  /// Throws TickError.
   const Eigen::VectorXd& tick(const Sensed& sensed);
 
   double period() const { return period_; }                        ///< s
@@ -57,6 +66,8 @@ class Controller {
 
  private:
   void assembleProblem(const Tick& tick);
+  /// The first task whose numbers no back end can work with, null when there is none.
+  const std::string* findUnusableTask() const;
 
   std::shared_ptr<const dynamics::Model> model_;
   std::vector<NamedSignal> signals_;

@@ -59,4 +59,10 @@ std::vector<double> CsvTable::numbers(int column) const {
   return values;
 }
 
+std::vector<double> CsvTable::numbers(std::string_view name) const {
+  const int found = column(name);
+  if (found < 0) throw FileError(path_, "has no column '" + std::string(name) + "'");
+  return numbers(found);
+}
+
 }  // namespace tactus::runtime

@@ -20,6 +20,8 @@ class CsvTable {
   const std::string& cell(size_t row, int column) const { return cells_[row][static_cast<size_t>(column)]; }
   /// Throws FileError, with row and column, for a cell that is not a number.
   std::vector<double> numbers(int column) const;
+  /// Throws FileError when there is no such column, too.
+  std::vector<double> numbers(std::string_view column) const;
 
  private:
   std::string path_;

@@ -3,7 +3,18 @@
 #include <chrono>
 #include <cmath>
 
+#include "framework/runtime/file_error.h"
+
 namespace tactus::runtime {
+namespace {
+
+void endWith(Ending ending, const std::exception& error, LoopResult& result) {
+  result.ending = ending;
+  result.message = error.what();
+  result.error = std::current_exception();
+}
+
+}  // namespace
 
 LoopResult runLoop(Plant& plant, control::Controller& controller, double duration,
                    const std::vector<Observer*>& observers, const std::atomic<bool>& stop) {
@@ -29,8 +40,11 @@ LoopResult runLoop(Plant& plant, control::Controller& controller, double duratio
       plant.advance(torque, controller.period());
     }
   } catch (const PlantError& error) {
-    result.ending = Ending::plant_error;
-    result.message = error.what();
+    endWith(Ending::plant_error, error, result);
+  } catch (const control::TickError& error) {
+    endWith(Ending::tick_error, error, result);
+  } catch (const FileError& error) {
+    endWith(Ending::file_error, error, result);
   }
   result.simulated = static_cast<double>(result.ticks) * controller.period();
   result.wall_clock = Seconds(Clock::now() - start).count();

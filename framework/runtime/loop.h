@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,9 @@ namespace tactus::runtime {
 enum class Ending {
   done,
   interrupted,                                                     ///< the stop flag was raised
-  plant_error                                                      ///< the plant gave up; `message` says why
+  plant_error,                                                     ///< the plant gave up; `message` says why
+  tick_error,                                                      ///< a task, signal or back end failed
+  file_error                                                       ///< an observer could not write
 };
 
 struct LoopResult {
@@ -21,11 +24,12 @@ struct LoopResult {
   long ticks = 0;
   double simulated = 0;                                            ///< s
   double wall_clock = 0;                                           ///< s, observers included
+  std::exception_ptr error;                                        ///< PlantError, TickError or FileError that ended it
   double realtimeFactor() const { return wall_clock > 0 ? simulated / wall_clock : 0; }
 };
 
 /// Controller and plant in turn, at the controller's period, for `duration` seconds or until `stop` is raised:
-/// sense, tick, observers in their order, advance.  What observers throw goes through.
+/// sense, tick, observers in their order, advance.  What observers throw besides FileError goes through.
 LoopResult runLoop(Plant& plant, control::Controller& controller, double duration,
                    const std::vector<Observer*>& observers, const std::atomic<bool>& stop);
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "framework/control/registry.h"
+#include "framework/runtime/version.h"
 
 /// What a plugin library shows to Tactus: one function that returns plain data, checked before any C++ type
 /// crosses.  Write TACTUS_PLUGIN("acme", "1.0.0", "BSD-3-Clause", registerElements) once in the library.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 namespace tactus::runtime {
 namespace {
@@ -29,12 +28,6 @@ std::string hexadecimal(std::uint64_t value) {
 std::string eigenVersion(std::uint32_t version) {
   return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
          std::to_string(version % 100);
-}
-
-std::set<std::string> elementNames(const control::Registry& registry) {
-  std::set<std::string> names;
-  for (const control::ElementRow& row : registry.elements().rows()) names.insert(row.name);
-  return names;
 }
 
 const PluginDescriptor* openLibrary(const std::string& path) {
@@ -95,7 +88,19 @@ void checkDescriptor(const PluginDescriptor* descriptor, const std::string& path
   if (!descriptor->register_elements) refuse(path, "its descriptor has no register function");
 }
 
-void registerInto(control::Registry& registry, const PluginDescriptor& descriptor, const std::string& path) {
+/// Two vendors never meet in one name: each element begins with its plugin's.
+void checkNames(const control::ElementTable& table, size_t known, const std::string& plugin, const std::string& path) {
+  const std::string prefix = plugin + ".";
+  for (size_t i = known; i < table.rows().size(); ++i) {
+    const std::string& name = table.rows()[i].name;
+    if (name.starts_with(prefix)) continue;
+    refuse(path, "registers the element '" + name + "', nothing of it is kept: elements of the plugin '" + plugin +
+                     "' begin with '" + prefix + "'; call it '" + prefix + name.substr(name.rfind('.') + 1) + "'");
+  }
+}
+
+void registerInto(control::Registry& registry, const PluginDescriptor& descriptor, bool shipped,
+                  const std::string& path) {
   const std::string failed =
       std::string("registration of plugin '") + descriptor.name + "' failed, nothing of it is kept: ";
   control::Registry enlarged = registry;
@@ -106,13 +111,18 @@ void registerInto(control::Registry& registry, const PluginDescriptor& descripto
   } catch (...) {
     refuse(path, failed + "it threw something that is not a std::exception");
   }
+  if (!shipped) checkNames(enlarged.elements(), registry.elements().rows().size(), descriptor.name, path);
   registry = std::move(enlarged);
 }
 
 }  // namespace
 
-PluginLoader::PluginLoader(control::Registry& registry, std::vector<std::string> folders)
-    : registry_(registry), folders_(std::move(folders)) {}
+PluginLoader::PluginLoader(control::Registry& registry, std::vector<std::string> folders,
+                           const std::string& shipped_folder)
+    : registry_(registry), folders_(std::move(folders)) {
+  std::error_code none;
+  if (!shipped_folder.empty()) shipped_folder_ = fs::canonical(shipped_folder, none).string();
+}
 
 const LoadedPlugin* PluginLoader::find(const std::string& name) const {
   const auto found =
@@ -138,13 +148,13 @@ const LoadedPlugin& PluginLoader::load(const std::string& path, const std::strin
   if (const LoadedPlugin* other = find(descriptor->name)) {
     refuse(library, "the name '" + other->name + "' is taken by " + other->path + "; name only one of the two");
   }
-  const std::set<std::string> before = elementNames(registry_);
-  registerInto(registry_, *descriptor, library);
+  const size_t known = registry_.elements().rows().size();
+  const bool shipped = !shipped_folder_.empty() && fs::path(library).parent_path() == shipped_folder_;
+  registerInto(registry_, *descriptor, shipped, library);
 
   LoadedPlugin plugin{descriptor->name, descriptor->version, descriptor->licence, library, {}, descriptor};
-  for (const control::ElementRow& row : registry_.elements().rows()) {
-    if (!before.contains(row.name)) plugin.elements.push_back(row.name);
-  }
+  const auto& rows = registry_.elements().rows();
+  for (size_t i = known; i < rows.size(); ++i) plugin.elements.push_back(rows[i].name);
   loaded_.push_back(std::move(plugin));
   return loaded_.back();
 }

@@ -33,8 +33,9 @@ struct LoadedPlugin {
 /// Load before reading a stack: a load moves the registry's rows, and ElementValues point at them.
 class PluginLoader {
  public:
-  /// `folders` are searched in order for plugins that are asked for by name.
-  PluginLoader(control::Registry& registry, std::vector<std::string> folders);
+  /// `folders` are searched in order for plugins that are asked for by name.  Plugins outside `shipped_folder` name
+  /// each of their elements with their own name and a dot, <acme.wiggle>; "" = there are no shipped ones.
+  PluginLoader(control::Registry& registry, std::vector<std::string> folders, const std::string& shipped_folder = "");
 
   /// Loads the library at `path`; a library that is loaded already is not loaded again.
   const LoadedPlugin& loadFile(const std::string& path);
@@ -54,6 +55,7 @@ class PluginLoader {
 
   control::Registry& registry_;
   std::vector<std::string> folders_;
+  std::string shipped_folder_;                                     ///< symbolic links followed
   std::deque<LoadedPlugin> loaded_;                                ///< a deque: references to its entries stay valid
 };
 

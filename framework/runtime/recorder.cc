@@ -5,6 +5,12 @@
 
 namespace tactus::runtime {
 
+namespace {
+
+constexpr double most_ticks_per_row = 1e15;                        // a slower rate writes the first row alone
+
+}  // namespace
+
 Recorder::Recorder(const RecorderOptions& options)
     : options_(options),
       timing_(options.folder + "/timing.csv", {"time", "tick_us"}),
@@ -15,7 +21,8 @@ void Recorder::observe(const ObservedTick& tick) {
   if (!columns_) {
     columns_.emplace(tick.controller, options_.columns, options_.contacts);
     log_.emplace(options_.folder + "/log.csv", columns_->names());
-    ticks_per_row_ = std::max(1L, std::lround(1 / (options_.row_rate * tick.controller.period())));
+    const double ticks = 1 / (options_.row_rate * tick.controller.period());
+    ticks_per_row_ = std::lround(std::clamp(ticks, 1.0, most_ticks_per_row));
   }
   if (ticks_ % ticks_per_row_ == 0) {
     for (size_t column = 0; column < columns_->size(); ++column) *log_ << columns_->value(column, tick);

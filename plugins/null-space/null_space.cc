@@ -37,7 +37,11 @@ struct NullSpace::Workspace {
 };
 
 NullSpace::NullSpace(const NullSpaceOptions& options)
-    : BackEnd({.strict_levels = options.cascade == Cascade::augmented, .inequalities = true}), options_(options) {}
+    : BackEnd({.strict_levels = options.cascade == Cascade::augmented,
+               .inequalities = true,
+               .strict_first_level = true,
+               .why_not_strict = "the successive cascade keeps only its first level strictly"}),
+      options_(options) {}
 
 NullSpace::~NullSpace() = default;
 

@@ -112,5 +112,44 @@ TEST(CheckCommand, AnotherBackEndIsCheckedInstead) {
   EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'magic'; back ends: null-space, qp"));
 }
 
+TEST(CheckCommand, WhatRunCannotDoIsNoGoodStack) {
+  const auto says = [](const std::string& from, const std::string& to) {
+    const TemporaryFolder folder;
+    const Outcome outcome = tactus({"check", changedStack(folder, from, to)});
+    EXPECT_EQ(outcome.exit_code, 3) << to;
+    return outcome.err;
+  };
+  EXPECT_THAT(says("rate=\"1000\"", "rate=\"3000\""),
+              HasSubstr(":14:42: error[E055]: at 3000 Hz a tick is not a whole number of the plant's steps of 0.00025 s: "
+                        "the nearest rates are 2000 and 4000 Hz"));
+  EXPECT_THAT(says("rate=\"1000\"", "rate=\"8000\""), HasSubstr("the highest rate is 4000 Hz"));
+  EXPECT_THAT(says("rate=\"1000\"", "rate=\"0.5\""), HasSubstr("expected a number ≥ 1 (Hz)"));
+  EXPECT_THAT(says("duration=\"1\"", "duration=\"1e9\""), HasSubstr("expected a number > 0 and ≤ 1e+06 (s)"));
+  EXPECT_THAT(says("duration=\"1\"", "duration=\"0.0001\""),
+              HasSubstr(":15:18: error[E014]: attribute 'duration': 1e-04 s is shorter than one tick of 0.001 s"));
+}
+
+TEST(CheckCommand, TheSuccessiveCascadeKeepsItsFirstLevelStrictly) {
+  const TemporaryFolder first, second;
+  const std::string cascade = "null-space/successive";
+  const std::string top = changedStack(first, "<level priority=\"1\">", "<level priority=\"1\" strict=\"true\">");
+  EXPECT_EQ(tactus({"check", top, "--backend", cascade}).exit_code, 0);
+  EXPECT_THAT(tactus({"check", top, "--backend", "qp"}).err,
+              HasSubstr("back end 'qp' weighs levels against each other: it cannot keep one strictly"));
+  const std::string low = changedStack(second, "<level priority=\"2\">", "<level priority=\"2\" strict=\"true\">");
+  EXPECT_EQ(tactus({"check", low}).exit_code, 0) << "every level of the augmented cascade is strict";
+  const Outcome outcome = tactus({"check", low, "--backend", cascade});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("back end 'null-space' cannot keep this level strictly: the successive cascade keeps "
+                                     "only its first level strictly"));
+}
+
+TEST(CheckCommand, UnknownAttributeWithoutANearNameListsTheOthers) {
+  const TemporaryFolder folder;
+  const Outcome outcome = tactus({"check", changedStack(folder, "stiffness=", "zzzzzz=")});
+  EXPECT_THAT(outcome.err, HasSubstr("<posture> has no attribute 'zzzzzz'; it takes name, class, joints, among, stiffness, "
+                                     "damping, q, on, desired, delay\n"));
+}
+
 }  // namespace
 }  // namespace tactus::testing

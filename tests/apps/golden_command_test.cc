@@ -1,8 +1,12 @@
 #include <gmock/gmock.h>
+#include <signal.h>
 
+#include <chrono>
 #include <filesystem>
 #include <map>
+#include <thread>
 
+#include "framework/runtime/version.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {
@@ -90,6 +94,47 @@ TEST_F(GoldenCommandTest, RenewingTakesOptionsToo) {
   ASSERT_EQ(tactus({"golden", "record", golden(), "--duration", "0.2", "--reason", "shorter"}).exit_code, 0);
   EXPECT_THAT(stack(), HasSubstr("duration=\"0.2\""));
   EXPECT_EQ(tactus({"golden", "verify", golden()}).exit_code, 0);
+}
+
+TEST_F(GoldenCommandTest, AFailedRecordingLeavesTheCaseAsItWas) {
+  const auto before = files();
+  const auto expectUntouched = [&] {
+    EXPECT_EQ(files(), before);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1) << "something was left over";
+  };
+  Settings small;
+  small.largest_file = 8000;
+  const Outcome full = tactus({"golden", "record", golden(), "--duration", "1", "--reason", "full disk"}, small);
+  EXPECT_EQ(full.exit_code, 6);
+  EXPECT_THAT(full.err, HasSubstr("cannot be written"));
+  expectUntouched();
+
+  const TemporaryFolder elsewhere;
+  const std::string broken = changedStack(elsewhere, "stiffness=\"1\"", "stiffness=\"nan\"");
+  EXPECT_EQ(tactus({"golden", "record", golden(), "--stack", broken, "--reason", "broken"}).exit_code, 3);
+  expectUntouched();
+
+  RunningProgram program({"golden", "record", golden(), "--duration", "3600", "--reason", "too long"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait().exit_code, 130);
+  expectUntouched();
+}
+
+TEST_F(GoldenCommandTest, RecordingKeepsOtherFilesOfTheCase) {
+  folder.write("press-short/notes.md", "why this case is here");
+  ASSERT_EQ(tactus({"golden", "record", golden() + "/", "--reason", "renewed"}).exit_code, 0);
+  EXPECT_EQ(contentOf(golden() + "/notes.md"), "why this case is here");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(GoldenCommand, ForeignFolderIsLeftAlone) {
+  const TemporaryFolder folder;
+  folder.write("thesis.tex", "years of work");
+  const Outcome outcome = tactus({"golden", "record", folder.path(), "--stack", data("press.xml"), "--reason", "to see"});
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.err, HasSubstr("holds files that are not of a golden case"));
+  EXPECT_EQ(contentOf(folder.file("thesis.tex")), "years of work");
 }
 
 TEST_F(GoldenCommandTest, TolerancesAreChecked) {

@@ -54,6 +54,15 @@ TEST(Plot, NothingOneValueAndNotANumberCanBeDrawn) {
   expectWellFormed(svgDocument(600, 300, draw(PointPlot{"t", "x", "y", {}, {}, {}, 1, true, {}}, box)));
 }
 
+TEST(Plot, ValuesBeyondEveryAxisLeaveAGap) {
+  for (const std::vector<double>& y :
+       {std::vector<double>{1e300, -1e300, 1}, {1e20, 1e20, 1e20}, {1e17, 1e17 + 16, 1e17}, {0, 1e-300, 0},
+        {1e11, 1e11 + 1e-4, 1e11}, {1e12, -1e12, 0}}) {
+    expectWellFormed(svgDocument(600, 300, draw(LinePlot{"t", "x", "y", {{"", "blue", {0, 1, 2}, y}}, 1e300, "w", false}, box)));
+    expectWellFormed(svgDocument(600, 300, draw(PointPlot{"t", "x", "y", y, {0, 1, 2}, y, 1, true, {{1e300, 0, true, "m"}}}, box)));
+  }
+}
+
 TEST(Plot, EqualAxesHaveOneScale) {
   PointPlot plot{"t", "x", "y", {0, 1}, {0, 0}, {0, 0}, 1, true, {{0, 0, true, "here"}, {1, 1, false, "there"}}};
   const std::string svg = svgDocument(600, 600, draw(plot, {0, 0, 600, 600}));

@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
+#include "framework/runtime/version.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {
@@ -32,6 +35,34 @@ TEST(PluginsCommand, ExplicitPluginIsLoaded) {
   const nlohmann::json plugins = tactus({"plugins", "list", "--json", "--plugin", library("good")}).json()["plugins"];
   ASSERT_TRUE(find(plugins, "good"));
   EXPECT_EQ((*find(plugins, "good"))["version"], "1.2.3");
+}
+
+TEST(PluginsCommand, FoldersAreListedToo) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(library("good"), folder.file("good.so"));
+  Settings with_path;
+  with_path.environment = {"TACTUS_PLUGIN_PATH=" + folder.path()};
+  EXPECT_TRUE(find(tactus({"plugins", "list", "--json"}, with_path).json()["plugins"], "good"));
+  const Outcome outcome = tactus({"plugins", "list", "--json", "--plugin", folder.path()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(find(outcome.json()["plugins"], "good"));
+}
+
+TEST(PluginsCommand, RefusedLibrariesOfAFolderAreTold) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(library("abi"), folder.file("abi.so"));
+  std::filesystem::copy(library("good"), folder.file("good.so"));
+  const Outcome outcome = tactus({"plugins", "list", "--json", "--plugin", folder.path()});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_TRUE(find(outcome.json()["plugins"], "good"));
+  EXPECT_THAT(outcome.json()["refused"].at(0).get<std::string>(), HasSubstr("plugin ABI 99"));
+  EXPECT_THAT(outcome.err, HasSubstr("abi.so: built with plugin ABI 99"));
+}
+
+TEST(PluginsCommand, ElementsWithoutTheirPluginsNameAreRefused) {
+  const Outcome outcome = tactus({"plugins", "list", "--plugin", library("bare")});
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.err, HasSubstr("elements of the plugin 'good' begin with 'good.'; call it 'good.idle'"));
 }
 
 TEST(PluginsCommand, WrongPluginIsExitFour) {

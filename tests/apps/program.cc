@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,12 +13,18 @@ RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const 
   std::vector<char*> words{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  const std::string out = output_.file("out"), err = output_.file("err");
+  const std::string out = settings.out.empty() ? output_.file("out") : settings.out, err = output_.file("err");
   process_ = ::fork();
   if (process_ != 0) return;
   for (const std::string& variable : settings.environment) ::putenv(const_cast<char*>(variable.c_str()));
   ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
   ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+  if (settings.largest_file >= 0) {
+    const rlim_t bytes = static_cast<rlim_t>(settings.largest_file);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::signal(SIGXFSZ, SIG_IGN);
+  }
   if (::chdir(settings.working_folder.c_str()) == 0) ::execv(program.c_str(), words.data());
   ::_exit(127);
 }

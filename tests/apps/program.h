@@ -22,6 +22,8 @@ struct Outcome {
 struct Settings {
   std::string working_folder = ".";
   std::vector<std::string> environment;                            ///< NAME=VALUE, besides the test's own
+  std::string out;                                                 ///< where stdout goes; "" = into the outcome
+  long largest_file = -1;                                          ///< bytes; writing beyond fails, as on a full disk
 };
 
 /// Waits for its end.

@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using runtime::CsvTable;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -163,6 +164,76 @@ TEST(RunCommand, FullDisk) {
   EXPECT_THAT(outcome.err, HasSubstr("log.csv: cannot be written: No space left on device"));
 }
 
+TEST(RunCommand, FullDiskLeavesAStatus) {
+  const TemporaryFolder folder;
+  Settings small;
+  small.largest_file = 100'000;                                    // the log passes it, run.json does not
+  changedStack(folder, "rate=\"100\"", "rate=\"1000\"");
+  const Outcome outcome = tactus({"run", folder.file("stack.xml"), "--out", folder.file("run")}, small);
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.err, HasSubstr("log.csv: cannot be written: File too large; the log is kept"));
+  const nlohmann::json run = nlohmann::json::parse(contentOf(folder.file("run/run.json")));
+  EXPECT_EQ(run["status"], "file-error");
+  EXPECT_THAT(run["message"].get<std::string>(), HasSubstr("log.csv: cannot be written"));
+  EXPECT_GT(run["duration_s"].get<double>(), 0);
+}
+
+TEST(RunCommand, PicturesThatCouldNotBeWrittenAreNotPromised) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(runInto(folder.file("run"), {"--duration", "0.1"}).exit_code, 0);
+  Settings small;
+  small.largest_file = 8'000;                                      // the report passes it, all else does not
+  const Outcome outcome = tactus({"run", data("press.xml"), "--out", folder.file("run"), "--duration", "0.03"}, small);
+  EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("cannot be written"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("pictures in")));
+  EXPECT_THAT(outcome.out, HasSubstr("contact_force_mean_N"));
+  EXPECT_EQ(nlohmann::json::parse(contentOf(folder.file("run/run.json")))["status"], "done");
+}
+
+TEST(RunCommand, ADurationBelowOneTickIsUsage) {
+  const TemporaryFolder folder;
+  const Outcome outcome = runInto(folder.file("run"), {"--duration", "0.0001"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--duration 0.0001 is shorter than one tick of 0.001 s"));
+  EXPECT_FALSE(fs::exists(folder.file("run")));
+}
+
+TEST(RunCommand, TheLongestRunTakesNoMoreMemory) {
+  const TemporaryFolder folder;
+  RunningProgram program({"run", data("press.xml"), "--duration", "1e6", "--out", folder.file("run")});
+  ASSERT_TRUE(waitForBytes(folder.file("run/log.csv"), 4000));
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait().exit_code, 130);
+}
+
+TEST(RunCommand, TargetsAreTheStacks) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(runInto(folder.file("none")).out, AllOf(Not(HasSubstr("wanted")), Not(HasSubstr("missed")), Not(HasSubstr("lost_rank"))));
+  const std::string stack =
+      changedStack(folder, "<record", "<target metric=\"contact_force_mean_N\" lower=\"0.1\" upper=\"9\"/>"
+                                      "<target metric=\"points_touched\" lower=\"1e9\"/><target metric=\"nothing\" upper=\"1\"/><record");
+  const Outcome outcome = tactus({"run", stack, "--out", folder.file("run")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("contact_force_mean_N +[0-9.]+ +0.1 – 9 +met\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("points_touched +[0-9.]+ +≥ 1e[+]09 +missed\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("warning: the target 'nothing' names no figure of this run"));
+  const nlohmann::json run = nlohmann::json::parse(contentOf(folder.file("run/run.json")));
+  EXPECT_EQ(run["wanted"]["contact_force_mean_N"], (nlohmann::json{{"lower", 0.1}, {"upper", 9.0}}));
+  EXPECT_TRUE(run["ticks"]["lost_rank"].is_number());
+  EXPECT_THAT(contentOf(folder.file("run/stack.resolved.xml")), HasSubstr("<target metric=\"points_touched\" lower=\"1e+09\"/>"));
+}
+
+TEST(RunCommand, ScaledTorquesAreCountedAsLimited) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "stiffness=\"1\" damping=\"0.4\"", "stiffness=\"1000\" damping=\"0.4\"");
+  const Outcome outcome = tactus({"run", stack, "--out", folder.file("run"), "--duration", "0.005", "--json"});
+  const CsvTable log = CsvTable::read(folder.file("run/log.csv"));
+  EXPECT_LT(log.numbers("controller/scale").front(), 1);
+  EXPECT_EQ(log.numbers("controller/limited").front(), 1);
+  EXPECT_GT(outcome.json()["ticks"]["limited"], 0);
+}
+
 TEST(RunCommand, MissingStack) { EXPECT_EQ(tactus({"run", "/nowhere/stack.xml"}).exit_code, 6); }
 
 TEST(RunCommand, BrokenStackLosesNothing) {
@@ -196,6 +267,8 @@ TEST(RunCommand, KilledRunLeavesAReadableLog) {
   const std::vector<double> time = log.numbers(log.column("time"));
   EXPECT_NEAR(time.back(), 0.01 * static_cast<double>(log.rows() - 1), 1e-9);
   EXPECT_EQ(nlohmann::json::parse(contentOf(folder.file("run/run.json")))["status"], "running");
+  EXPECT_EQ(tactus({"report", folder.file("run")}).exit_code, 0);
+  EXPECT_THAT(contentOf(folder.file("run/report.html")), HasSubstr("This run was cut off"));
 }
 
 TEST(RunCommand, InterruptedRunKeepsEverything) {

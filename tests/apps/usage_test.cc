@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "framework/runtime/version.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {
@@ -29,6 +30,7 @@ TEST(Usage, EveryCommandHasHelpWithExamples) {
                                                        {"golden", "record"},
                                                        {"plugins"},
                                                        {"report"},
+                                                       {"explain"},
                                                        {"golden", "verify"},
                                                        {"plugins", "list"}};
   for (std::vector<std::string> command : commands) {
@@ -79,10 +81,40 @@ TEST(Usage, MissingArgument) {
 }
 
 TEST(Usage, NumbersThatAreNone) {
-  EXPECT_THAT(tactus({"run", "x.xml", "--duration", "-1"}).err, HasSubstr("'-1' is not a number greater than 0"));
+  EXPECT_THAT(tactus({"run", "x.xml", "--duration", "-1"}).err, HasSubstr("'-1' is not a number greater than 0 and at most 1e+06"));
   EXPECT_THAT(tactus({"run", "x.xml", "--duration", "1.5abc"}).err,
               HasSubstr("'1.5abc' is not a number greater than 0"));
-  EXPECT_EQ(tactus({"run", "x.xml", "--seed", "x"}).exit_code, 2);
+  EXPECT_EQ(tactus({"run", "x.xml", "--duration", "1e300"}).exit_code, 2);
+  for (const std::string seed : {"x", "-1", "1.5", "2147483648", ""}) {
+    const Outcome outcome = tactus({"run", data("press.xml"), "--seed=" + seed});
+    EXPECT_EQ(outcome.exit_code, 2) << seed;
+  }
+  EXPECT_THAT(tactus({"run", data("press.xml"), "--seed", "-1"}).err,
+              HasSubstr("'-1' is not a whole number from 0 to 2147483647"));
+}
+
+TEST(Usage, DataThatCannotBeWrittenIsAFailure) {
+  const TemporaryFolder folder;
+  Settings full;
+  full.out = "/dev/full";
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"run", data("press.xml"), "--json", "--duration", "0.01", "--out", folder.file("run")},
+                                             {"plugins", "list"},
+                                             {"explain"},
+                                             {"check", data("press.xml")},
+                                             {"--version"}}) {
+    const Outcome outcome = tactus(command, full);
+    EXPECT_EQ(outcome.exit_code, 6) << command[0];
+    EXPECT_THAT(outcome.err, HasSubstr("tactus: standard output could not be written\n"));
+  }
+}
+
+/// The commands that a help page shows for the shipped robots do what they promise.
+TEST(Usage, TheRobotsOfTheHelpExist) {
+  const std::string help = tactus({"dynamics", "--help"}).out;
+  ASSERT_THAT(help, HasSubstr("tactus dynamics lwr_4plus --q 0,0,0,1.57,0,0,0 --qdd 0,0,0,1,0,0,0 --gravity 0,0,0"));
+  EXPECT_EQ(tactus({"dynamics", "lwr_4plus", "--q", "0,0,0,1.57,0,0,0", "--qdd", "0,0,0,1,0,0,0", "--gravity", "0,0,0"})
+                .exit_code, 0);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"two_roots.xml", "E004", 19, 1, "<stack> is a second outermost element: a file has one"},
         Expected{"unknown_attribute.xml", "E012", 14, 41, "<impedance> has no attribute 'stifness'", "stiffness"},
         Expected{"unknown_back_end.xml", "E037", 17, 24,
-                 "there is no back end 'nullspace': there are null-space, all, none", "null-space"},
+                 "there is no back end 'nullspace': there are null-space, all, none, first", "null-space"},
         Expected{"unknown_class.xml", "E035", 15, 33, "the stack has no class 'soft'"},
         Expected{"unknown_element.xml", "E011", 14, 5,
                  "there is no element <impedence>; here may stand: contact-force, contact-limit, joint-limits, "

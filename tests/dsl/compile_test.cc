@@ -97,6 +97,14 @@ TEST(Compile, WhatTheBackEndLacksIsSaidWhereItIsAskedFor) {
   EXPECT_THAT(errors(smallStack(level("<test.press name=\"p\"/>"), none)), testing::IsEmpty());
 }
 
+TEST(Compile, ABackEndMayKeepItsFirstLevelAloneStrictly) {
+  const std::string first = "<controller backend=\"first\"/>", pull = "<test.pull name=\"";
+  EXPECT_THAT(errors(smallStack("<level priority=\"2\" strict=\"true\">" + pull + "p\"/></level>", first)), testing::IsEmpty());
+  EXPECT_THAT(errors(smallStack("<level priority=\"1\" strict=\"true\">" + pull + "p\"/></level>\n<level priority=\"2\" strict=\"true\">" +
+                                    pull + "q\"/></level>", first)),
+              ElementsAre("4:29 E060 back end 'first' cannot keep this level strictly: it is only strict at the top"));
+}
+
 TEST(Compile, HandsOnRateGravityLevelsAndNames) {
   auto controller =
       compile(smallStack("<scene gravity=\"0 0 0\"/><level priority=\"2\" weight=\"4\"><test.pull name=\"p\"/></level>"

@@ -239,10 +239,10 @@ TEST(ReadStack, WhatIsWrongWithAlternatives) {
                                        "<alternative backend=\"none\" projecton=\"successive\"/>\n"
                                        "<alternative backend=\"none\" rate=\"10\"/>\n"
                                        "<alternative/></controller>")),
-              ElementsAre("4:49 E037 there is no back end 'al': there are null-space, all, none [all]",
+              ElementsAre("4:49 E037 there is no back end 'al': there are null-space, all, none, first [all]",
                           "5:29 E012 back end 'none' has no option 'projecton' [projection]",
                           "6:23 E020 back end 'none' has its options already",
-                          "6:29 E012 back end 'none' has no option 'rate'",
+                          "6:29 E012 back end 'none' has no option 'rate'; it takes backend, projection, tolerance",
                           "7:1 E013 <alternative> needs the attribute 'backend'"));
 }
 
@@ -298,6 +298,57 @@ TEST(ReadStack, CountsAndClasses) {
   EXPECT_THAT(
       errors(smallStack("<scene><object name=\"o\" pose=\"1 2\"><plane/></object></scene>" + level)),
       ElementsAre("3:31 E014 attribute 'pose': expected 3 numbers (x y z) or 6 (x y z roll pitch yaw), found 2"));
+}
+
+TEST(ReadStack, TargetsHaveBounds) {
+  const auto with = [](const std::string& targets) {
+    return smallStack(level, "<controller backend=\"all\"/>\n<run>" + targets + "</run>");
+  };
+  const dsl::Stack stack = read(with("<target metric=\"a\" lower=\"1\"/><target metric=\"b\" lower=\"0\" upper=\"0\"/>"));
+  ASSERT_EQ(stack.run.targets.size(), 2u);
+  EXPECT_EQ(stack.run.targets[0].lower, 1);
+  EXPECT_FALSE(stack.run.targets[0].upper);
+  EXPECT_EQ(stack.run.targets[1].upper, 0);
+  EXPECT_THAT(errors(with("<target metric=\"a\"/>")),
+              ElementsAre("5:6 E013 <target> needs 'lower' or 'upper', or both"));
+  EXPECT_THAT(errors(with("<target metric=\"a\" lower=\"2\" upper=\"1\"/>")),
+              ElementsAre("5:42 E014 attribute 'upper': it must not be below 'lower'"));
+  EXPECT_THAT(errors(with("<target metric=\"a\" lower=\"2\"/><target metric=\"a\" upper=\"1\"/>")),
+              ElementsAre("5:52 E020 'a' has its target already"));
+}
+
+TEST(ReadStack, ATickIsAWholeNumberOfThePlantsSteps) {
+  const auto at = [](const std::string& rate) {
+    return smallStack(level, "<controller backend=\"all\" rate=\"" + rate + "\"/>");
+  };
+  dsl::ReadOptions options = readOptions();
+  EXPECT_THAT(errors(at("3000"), options), testing::IsEmpty()) << "without a plant every rate is right";
+  options.plant_step = 0.25e-3;
+  for (const char* rate : {"4000", "2000", "1000", "800", "1"}) EXPECT_THAT(errors(at(rate), options), testing::IsEmpty()) << rate;
+  EXPECT_THAT(errors(at("3000"), options),
+              ElementsAre("4:33 E055 at 3000 Hz a tick is not a whole number of the plant's steps of 0.00025 s: the nearest "
+                          "rates are 2000 and 4000 Hz"));
+  EXPECT_THAT(errors(at("5000"), options),
+              ElementsAre("4:33 E055 at 5000 Hz a tick is not a whole number of the plant's steps of 0.00025 s: the highest "
+                          "rate is 4000 Hz"));
+}
+
+TEST(ReadStack, ARunHasATickAndAnEnd) {
+  const auto of = [](const std::string& duration) {
+    return smallStack(level, "<controller backend=\"all\" rate=\"100\"/>\n<run duration=\"" + duration + "\"/>");
+  };
+  EXPECT_THAT(errors(of("0.01")), testing::IsEmpty());
+  EXPECT_THAT(errors(of("0.004")),
+              ElementsAre("5:16 E014 attribute 'duration': 0.004 s is shorter than one tick of 0.01 s"));
+  EXPECT_THAT(errors(of("1e7")),
+              ElementsAre("5:16 E014 attribute 'duration': '1e7' is out of range: expected a number > 0 and ≤ 1e+06 (s)"));
+}
+
+TEST(ReadStack, AnUnknownAttributeWithoutANearNameListsTheOthers) {
+  EXPECT_THAT(errors(smallStack("<level priority=\"1\" zzzzzz=\"1\"><test.pull name=\"p\"/></level>")),
+              ElementsAre("3:21 E012 <level> has no attribute 'zzzzzz'; it takes priority, weight, strict"));
+  EXPECT_THAT(errors(smallStack("<signals zzzzzz=\"1\"/>" + level)),
+              ElementsAre("3:10 E012 <signals> has no attribute 'zzzzzz'; it takes none"));
 }
 
 TEST(ReadStack, AMissingFileIsSaidAtItsFirstCharacter) {

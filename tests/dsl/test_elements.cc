@@ -118,6 +118,7 @@ Registry makeRegistry() {
   addBackEnd(registry, "null-space", {.strict_levels = true, .inequalities = true});
   addBackEnd(registry, "all", {true, true, true, true, true});
   addBackEnd(registry, "none", {});
+  addBackEnd(registry, "first", {.strict_first_level = true, .why_not_strict = "it is only strict at the top"});
   return registry;
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "dsl/read_stack.h"
 #include "dsl/typed_attributes.h"
 #include "tests/dsl/test_elements.h"
@@ -72,6 +74,12 @@ void expectSame(const dsl::Stack& a, const dsl::Stack& b) {
   EXPECT_EQ(a.run.seed, b.run.seed);
   EXPECT_EQ(a.run.columns, b.run.columns);
   EXPECT_EQ(a.run.record_rate, b.run.record_rate);
+  ASSERT_EQ(a.run.targets.size(), b.run.targets.size());
+  for (std::size_t i = 0; i < a.run.targets.size(); ++i) {
+    EXPECT_EQ(a.run.targets[i].metric, b.run.targets[i].metric);
+    EXPECT_EQ(a.run.targets[i].lower, b.run.targets[i].lower);
+    EXPECT_EQ(a.run.targets[i].upper, b.run.targets[i].upper);
+  }
 }
 
 const std::string rich =
@@ -89,7 +97,8 @@ const std::string rich =
     "<include file=\"low.xml\"/>\n"
     "<controller backend=\"all\" projection=\"successive\"><alternative backend=\"none\" tolerance=\"${k}\"/>"
     "</controller>\n"
-    "<run duration=\"12.5\" seed=\"7\"><record columns=\"all\" rate=\"50\"/></run>\n</stack>\n";
+    "<run duration=\"12.5\" seed=\"7\"><record columns=\"all\" rate=\"50\"/>"
+    "<target metric=\"a_N\" lower=\"${k}\" upper=\"2\"/><target metric=\"b\" upper=\"-1\"/></run>\n</stack>\n";
 
 TEST(WriteResolved, ReadsBackToTheSameStack) {
   writeFile("low.xml",
@@ -117,6 +126,34 @@ TEST(WriteResolved, KeepsWhatTheCommandLineSaid) {
   EXPECT_EQ(again.back_end.real("tolerance"), 0.25);
   EXPECT_EQ(again.levels[0].tasks[0].values.real("stiffness"), 0.5);
   EXPECT_EQ(again.run.seed, 99u);
+}
+
+TEST(WriteResolved, LeavesOutDefaultsThatNameWhatTheStackDoesNotHave) {
+  const std::string stack =
+      "<stack format=\"1\"><robot model=\"lwr_allegro\"/>@<level priority=\"1\"><posture name=\"p\" joints=\"arm\"/></level>"
+      "<controller backend=\"all\"/></stack>";
+  const auto resolvedWith = [&](const std::string& signals) {
+    std::string text = stack;
+    const dsl::Stack first = readFrom(writeFile("stack.xml", text.replace(text.find('@'), 1, signals)));
+    const std::string written = dsl::writeResolved(first);
+    expectSame(first, readFrom(writeFile("again.xml", written)));
+    return written;
+  };
+  EXPECT_THAT(resolvedWith(""), testing::Not(testing::HasSubstr("touch")));
+  EXPECT_THAT(resolvedWith("<signals><test.probe name=\"touch\"/></signals>"), testing::Not(testing::HasSubstr("touch.")));
+  EXPECT_THAT(resolvedWith("<signals><contacts name=\"touch\" desired=\"fingers\"/></signals>"),
+              testing::HasSubstr("on=\"touch.all\" desired=\"touch.desired\""));
+}
+
+TEST(WriteResolved, AFilesNameBecomesOneThatAStackMayHave) {
+  const std::string text = "<stack format=\"1\"><robot model=\"lwr_4plus\"/><level priority=\"1\"><test.pull name=\"p\"/></level>"
+                           "<controller backend=\"all\"/></stack>";
+  for (const auto& [file, name] : std::map<std::string, std::string>{
+           {"reach.xml", "reach"}, {"my stack.v2.xml", "my-stack-v2"}, {"2_arms.xml", "stack-2_arms"}, {"ä.xml", "stack---"}}) {
+    const dsl::Stack stack = readFrom(writeFile(file, text));
+    EXPECT_EQ(stack.name, name);
+    expectSame(stack, readFrom(writeFile("again.xml", dsl::writeResolved(stack))));
+  }
 }
 
 TEST(WriteResolved, FindsAModelBesideTheStackAgain) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/runtime/file_error.h"
 #include "tests/runtime/pendulum.h"
 
 namespace tactus::runtime {
@@ -63,8 +64,24 @@ TEST(Loop, PlantErrorEndsTheRunWithItsMessage) {
   const LoopResult result = runLoop(plant, *pendulumController(0.5), 1, {&witness}, witness.stop);
   EXPECT_EQ(result.ending, Ending::plant_error);
   EXPECT_EQ(result.message, "the rod broke");
+  EXPECT_THROW(std::rethrow_exception(result.error), PlantError);
   EXPECT_EQ(result.ticks, 50);
   EXPECT_EQ(witness.times.size(), 51u);  // the tick before the break was seen
+}
+
+TEST(Loop, AFileThatCannotBeWrittenEndsTheRunWithItsMessage) {
+  class FullDisk final : public Observer {
+    void observe(const ObservedTick& tick) override {
+      if (tick.sensed.time > 0.0095) throw FileError("log.csv", "no space");
+    }
+  };
+  PendulumPlant plant;
+  FullDisk disk;
+  const std::atomic<bool> stop{false};
+  const LoopResult result = runLoop(plant, *pendulumController(0.5), 1, {&disk}, stop);
+  EXPECT_EQ(result.ending, Ending::file_error);
+  EXPECT_EQ(result.message, "log.csv: no space");
+  EXPECT_EQ(result.ticks, 10);
 }
 
 TEST(Loop, WhatObserversThrowGoesThrough) {

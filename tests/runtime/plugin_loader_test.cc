@@ -39,9 +39,9 @@ TEST_F(PluginLoaderTest, GoodPluginRegistersItsElements) {
   EXPECT_EQ(plugin.name, "good");
   EXPECT_EQ(plugin.version, "1.2.3");
   EXPECT_EQ(plugin.licence, "BSD-3-Clause");
-  EXPECT_EQ(plugin.elements, std::vector<std::string>{"test.idle"});
-  ASSERT_NE(registry.elements().findBackEnd("test.idle"), nullptr);
-  const control::ElementValues values = control::makeValues(*registry.elements().findBackEnd("test.idle"));
+  EXPECT_EQ(plugin.elements, std::vector<std::string>{"good.idle"});
+  ASSERT_NE(registry.elements().findBackEnd("good.idle"), nullptr);
+  const control::ElementValues values = control::makeValues(*registry.elements().findBackEnd("good.idle"));
   EXPECT_NE(registry.makeBackEnd(values), nullptr);
 }
 
@@ -127,19 +127,31 @@ TEST_F(PluginLoaderTest, ThrowingRegistrationLeavesNothing) {
 
 TEST_F(PluginLoaderTest, ElementRegisteredTwiceLeavesNothing) {
   EXPECT_THAT(refusalOf(library("duplicate")), AllOf(HasSubstr("registration of plugin 'duplicate' failed"),
-                                                     HasSubstr("test.idle")));
+                                                     HasSubstr("duplicate.idle")));
 }
 
 TEST_F(PluginLoaderTest, FailureHalfwayKeepsWhatWasThereBefore) {
   control::ElementRow taken;
-  taken.name = "taken";
+  taken.name = "halfway.taken";
   taken.kind = control::ElementKind::back_end;
   taken.description = "Was here first.";
   registry.addBackEnd(taken, [](const control::ElementValues&) { return nullptr; });
   EXPECT_THROW(loader.loadFile(library("halfway")), PluginError);
-  EXPECT_EQ(registry.elements().findBackEnd("test.idle"), nullptr);
-  ASSERT_NE(registry.elements().findBackEnd("taken"), nullptr);
-  EXPECT_EQ(registry.elements().findBackEnd("taken")->description, "Was here first.");
+  EXPECT_EQ(registry.elements().findBackEnd("halfway.idle"), nullptr);
+  ASSERT_NE(registry.elements().findBackEnd("halfway.taken"), nullptr);
+  EXPECT_EQ(registry.elements().findBackEnd("halfway.taken")->description, "Was here first.");
+}
+
+TEST_F(PluginLoaderTest, ElementsCarryTheirPluginsName) {
+  EXPECT_THAT(refusalOf(library("bare")),
+              HasSubstr("bare.so: registers the element 'idle', nothing of it is kept: elements of the plugin 'good' "
+                        "begin with 'good.'; call it 'good.idle'"));
+  EXPECT_THAT(refusalOf(library("stranger")), HasSubstr("registers the element 'other.idle'"));
+}
+
+TEST_F(PluginLoaderTest, ShippedPluginsNameTheirElementsFreely) {
+  PluginLoader with_shipped(registry, {}, TEST_PLUGINS);
+  EXPECT_EQ(with_shipped.loadFile(library("bare")).elements, std::vector<std::string>{"idle"});
 }
 
 TEST_F(PluginLoaderTest, TwoPluginsOfOneName) {

@@ -28,7 +28,8 @@ void record(const RecorderOptions& options, double duration, bool with_kkt = fal
   with_contacts.contacts = &contacts;
   Recorder recorder(with_contacts);
   const std::atomic<bool> stop{false};
-  runLoop(plant, *pendulumController(0.5, with_kkt), duration, {&contacts, &recorder}, stop);
+  const LoopResult result = runLoop(plant, *pendulumController(0.5, with_kkt), duration, {&contacts, &recorder}, stop);
+  if (result.error) std::rethrow_exception(result.error);
   recorder.close();
 }
 

@@ -40,5 +40,41 @@ TEST(RunStatistics, TorqueLimitsAreCounted) {
   EXPECT_EQ(statistics.limited, 10);
 }
 
+/// A pendulum's tick, observed again and again.
+struct SameTick {
+  std::unique_ptr<control::Controller> controller;
+  control::Sensed sensed;
+  explicit SameTick(double target) : controller(pendulumController(target)) {
+    sensed.q = sensed.qd = Eigen::VectorXd::Zero(1);
+    controller->tick(sensed);
+  }
+  ObservedTick with(double tick_us) const { return {sensed, *controller, sensed.q, tick_us}; }
+};
+
+TEST(RunStatistics, KeepsABoundedNumberOfTimesHoweverLongTheRun) {
+  const SameTick tick(0.5);
+  const long ticks = 2 * RunStatistics::most_times + 1000;
+  RunStatistics statistics(1'000'000'000'000);
+  for (long i = 0; i < ticks; ++i) statistics.observe(tick.with(static_cast<double>(i)));
+  EXPECT_EQ(statistics.ticks(), ticks);
+  const std::vector<double>& times = statistics.tickTimes();
+  ASSERT_LE(static_cast<long>(times.size()), RunStatistics::most_times);
+  ASSERT_GE(static_cast<long>(times.size()), RunStatistics::most_times / 4);
+  EXPECT_LE(times.capacity(), 2u * RunStatistics::most_times);
+  // Evenly from the whole run: every 4th.
+  for (size_t i = 0; i < times.size(); ++i) ASSERT_EQ(times[i], 4.0 * static_cast<double>(i));
+}
+
+TEST(RunStatistics, NamesTheTaskWhoseNumbersFail) {
+  const SameTick tick(std::nan(""));
+  RunStatistics statistics(3);
+  for (int i = 0; i < 3; ++i) statistics.observe(tick.with(1));
+  EXPECT_EQ(statistics.fallbacks, 3);
+  ASSERT_EQ(statistics.unusableTasks().size(), 1u);
+  EXPECT_EQ(statistics.unusableTasks()[0].name, "lift");
+  EXPECT_EQ(statistics.unusableTasks()[0].first_time, 0);
+  EXPECT_EQ(statistics.unusableTasks()[0].ticks, 3);
+}
+
 }  // namespace
 }  // namespace tactus::runtime

@@ -30,10 +30,14 @@ void addIdle(control::Registry& registry, const std::string& name) {
 }
 
 void registerElements(control::Registry& registry) {
-  addIdle(registry, "test.idle");
   const std::string_view wrong = fault;
-  if (wrong == "duplicate") addIdle(registry, "test.idle");
-  if (wrong == "halfway") addIdle(registry, "taken");
+  if (wrong == "duplicate" || wrong == "halfway") {
+    addIdle(registry, std::string(fault) + ".idle");
+  } else {
+    addIdle(registry, wrong == "bare" ? "idle" : wrong == "stranger" ? "other.idle" : "good.idle");
+  }
+  if (wrong == "duplicate") addIdle(registry, "duplicate.idle");
+  if (wrong == "halfway") addIdle(registry, "halfway.taken");
   if (wrong == "standard_throw") throw std::runtime_error("the licence server is on holiday");
   if (wrong == "other_throw") throw 7;
 }

@@ -1,0 +1,15 @@
+# find_package(Tactus), from the build tree as from an installed one: target Tactus::framework and tactus_add_plugin.
+include(CMakePackageConfigHelpers)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Tactus)
+
+install(TARGETS tactus_framework tactus_flags EXPORT TactusTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY framework DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus FILES_MATCHING PATTERN "*.h")
+install(EXPORT TactusTargets NAMESPACE Tactus:: DESTINATION ${package_folder})
+export(EXPORT TactusTargets NAMESPACE Tactus:: FILE ${PROJECT_BINARY_DIR}/TactusTargets.cmake)
+
+configure_package_config_file(cmake/TactusConfig.cmake.in ${PROJECT_BINARY_DIR}/TactusConfig.cmake
+                              INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/TactusConfigVersion.cmake COMPATIBILITY ExactVersion)
+file(COPY cmake/TactusPlugin.cmake DESTINATION ${PROJECT_BINARY_DIR})
+install(FILES ${PROJECT_BINARY_DIR}/TactusConfig.cmake ${PROJECT_BINARY_DIR}/TactusConfigVersion.cmake
+              cmake/TactusPlugin.cmake DESTINATION ${package_folder})
