@@ -68,6 +68,7 @@ const std::vector<std::pair<std::vector<std::string>, std::set<std::string>>> kF
     {{"nlopt"}, {"plugins"}},
     {{"nlohmann/"}, {"dsl", "apps"}},
     {{"CLI/"}, {"apps"}},
+    {{"mujoco/", "kdl/", "dart/"}, {"bench"}},                     // witnesses, of tests and benchmarks only
 };
 
 TEST(Rooms, EachKnowsOnlyWhatIsBelowIt) {
