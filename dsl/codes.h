@@ -76,8 +76,8 @@ inline constexpr std::array all_codes{
     code::level_order,        code::unknown_link,       code::unknown_joint,    code::unknown_object,
     code::unknown_port,       code::wrong_port_type,    code::unknown_class,    code::unknown_parameter,
     code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
-    code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::unfit_rate, code::lacking_ability,
-    code::refused_by_factory, code::unfit_for_dynamics, code::plugin_failed,    code::no_root_link,
+    code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::unfit_rate,
+    code::lacking_ability,    code::refused_by_factory, code::unfit_for_dynamics, code::plugin_failed,    code::no_root_link,
     code::several_root_links, code::kinematic_loop,     code::unsupported_joint, code::reversed_limits,
     code::refused_by_urdf,    code::no_inertia,         code::bad_mass,         code::bad_inertia,
     code::shape_not_felt,     code::urdf_remark,        code::unused_signal};
