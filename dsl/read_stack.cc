@@ -285,8 +285,8 @@ class StackReader {
         steps < 1 ? "the highest rate is " + rateOf(1)
                   : "the nearest rates are " + rateOf(std::ceil(steps)) + " and " + rateOf(std::floor(steps));
     findings_.errorAtValue(code::unfit_rate, *element.xml, *written,
-                           "at " + control::formatNumber(rate) + " Hz a tick is not a whole number of the plant's steps of " +
-                               control::formatNumber(step) + " s: " + nearest + " Hz");
+                           "at " + control::formatNumber(rate) + " Hz a tick is not a whole number of the plant's " +
+                               "steps of " + control::formatNumber(step) + " s: " + nearest + " Hz");
   }
 
   /// What the controller, first, and its alternatives give their back ends; those that name none are left out.

@@ -21,7 +21,7 @@ struct ReadOptions {
   /// Loads the plugin that <plugin name> asks for into the registry; throws std::runtime_error with the reason.
   std::function<void(const std::string& name)> load_plugin;
   std::string backend;                                        ///< --backend: replaces the controller's; "" = as written
-  double plant_step = 0;                                      ///< s; a tick must be a whole number of them; 0 = any rate
+  double plant_step = 0;                                           ///< s; a tick is a whole number of them; 0 = any rate
   std::map<std::string, std::string> backend_options;             ///< option=value for that back end, e.g. solver=nlopt
 };
 

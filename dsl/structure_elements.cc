@@ -179,7 +179,7 @@ ElementRow controllerRow() {
           .description = "The back end that solves every tick, with that back end's own options as further attributes.",
           .attributes = {{.name = "backend", .type = ValueType::text, .required = true, .description = "Its name."},
                          {.name = "rate", .type = ValueType::real, .unit = "Hz", .default_text = "1000",
-                          .description = "Ticks per second; a tick must be a whole number of the plant's steps.", .lower = 1}},
+                          .description = "Ticks per second; a tick is a whole number of the plant's steps.", .lower = 1}},
           .children = {{"alternative"}},
           .takes_back_end_options = true};
 }
@@ -199,7 +199,8 @@ ElementRow runRow() {
           .kind = ElementKind::structure,
           .description = "What `tactus run` does when it is not told otherwise.",
           .attributes = {{.name = "duration", .type = ValueType::real, .unit = "s", .default_text = "10",
-                          .description = "Simulated time, at least one tick.", .lower = 0, .upper = longest_run, .lower_open = true},
+                          .description = "Simulated time, at least one tick.", .lower = 0, .upper = longest_run,
+                          .lower_open = true},
                          {.name = "seed", .type = ValueType::integer, .default_text = "1",
                           .description = "Of every draw; 0 draws no jitter.", .lower = 0}},
           .children = {{"record", 0, 1}, {"target"}}};

@@ -139,7 +139,8 @@ std::string text(const ElementRow& row) {
   if (row.takes_back_end_options) out += "  and the options of the back end that `backend` names\n";
   if (!row.ports.empty()) out += "\nports, read as signal.port\n";
   for (const control::PortRow& port : row.ports) {
-    out += "  " + port.name + ": " + port.type + (port.unit.empty() || port.unit == "1" ? "" : "; " + port.unit) + "\n" +
+    const bool has_unit = !port.unit.empty() && port.unit != "1";
+    out += "  " + port.name + ": " + port.type + (has_unit ? "; " + port.unit : "") + "\n" +
            (port.description.empty() ? "" : "      " + port.description + "\n");
   }
   if (!row.children.empty()) out += "\nchildren\n";
@@ -179,8 +180,8 @@ int explain(const ExplainArguments& arguments, bool json) {
   }
   if (found.empty()) {
     const std::string nearest = dsl::nearestName(arguments.type, names);
-    throw UsageError("nothing is called '" + arguments.type + "'" +
-                     (nearest.empty() ? "; 'tactus explain' lists what there is" : "; did you mean '" + nearest + "'?"));
+    const std::string hint = nearest.empty() ? "'tactus explain' lists what there is" : "did you mean '" + nearest + "'?";
+    throw UsageError("nothing is called '" + arguments.type + "'; " + hint);
   }
   std::cout << (json ? ordered_json{{"elements", found}}.dump(2) + "\n" : out);
   return exit_done;
@@ -192,7 +193,8 @@ void addExplain(CLI::App& program, Context& context) {
   CLI::App* command =
       program.add_subcommand("explain", "What an element of a stack or a back end means and takes; alone: all of them");
   const auto arguments = std::make_shared<ExplainArguments>();
-  command->add_option("TYPE", arguments->type, "An element or a back end: impedance, level, sphere, qp, …")->type_name("");
+  command->add_option("TYPE", arguments->type, "An element or a back end: impedance, level, sphere, qp, …")
+      ->type_name("");
   declarePlugins(*command, arguments->plugins);
   command->add_flag("--json", context.json,
                     "{elements: [{name, kind, description, source?, attributes, ports, children}]}");

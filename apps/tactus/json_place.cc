@@ -10,7 +10,8 @@ using nlohmann::ordered_json;
 
 void JsonPlace::refuse(const std::string& expected) const {
   const std::string found = exists() ? value_->type_name() : "nothing";
-  throw runtime::FileError(file_, "at '" + (where_.empty() ? "/" : where_) + "': expected " + expected + ", found " + found);
+  const std::string where = where_.empty() ? "/" : where_;
+  throw runtime::FileError(file_, "at '" + where + "': expected " + expected + ", found " + found);
 }
 
 JsonPlace JsonPlace::at(const std::string& key) const {
@@ -55,7 +56,8 @@ ordered_json readJson(const std::string& path) {
     const std::string before = content.substr(0, error.byte > 0 ? error.byte - 1 : 0);
     const auto line = std::count(before.begin(), before.end(), '\n') + 1;
     const size_t column = before.size() - (before.rfind('\n') + 1) + 1;
-    throw runtime::FileError(path, "line " + std::to_string(line) + ", column " + std::to_string(column) + ": is not JSON");
+    throw runtime::FileError(path, "line " + std::to_string(line) + ", column " + std::to_string(column) +
+                                       ": is not JSON");
   } catch (const ordered_json::exception&) {
     throw runtime::FileError(path, "holds a number that cannot be represented");
   }

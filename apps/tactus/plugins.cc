@@ -30,7 +30,8 @@ int list(const std::vector<std::string>& paths, bool json) {
     rows.push_back({plugin.name, plugin.version, plugin.licence, joined(plugin.elements), plugin.path});
   }
   if (json) {
-    std::cout << ordered_json{{"plugins", plugins}, {"refused", refused}, {"searched", program.plugins().folders()}}.dump(2) << "\n";
+    const ordered_json all{{"plugins", plugins}, {"refused", refused}, {"searched", program.plugins().folders()}};
+    std::cout << all.dump(2) << "\n";
   } else {
     std::cout << textTable(rows);
     std::cerr << "searched: " << joined(program.plugins().folders()) << "\n";
@@ -46,7 +47,8 @@ void addPlugins(CLI::App& program, Context& context) {
   CLI::App* list_command = command->add_subcommand("list", "Every loaded plugin with its elements and its library");
   const auto paths = std::make_shared<std::vector<std::string>>();
   declarePlugins(*list_command, *paths);
-  list_command->add_flag("--json", context.json, "{plugins: [{name, version, licence, path, elements, …}], refused, searched}");
+  list_command->add_flag("--json", context.json,
+                         "{plugins: [{name, version, licence, path, elements, …}], refused, searched}");
   command->require_subcommand(0, 1);
   constexpr const char* examples =
       R"(Exit code 4 when a library of a searched folder is refused.

@@ -50,7 +50,8 @@ std::map<std::string, std::string> parseSettings(const std::vector<std::string>&
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& plugins) : plugins_(registry_, pluginFolders(plugins), runtime::shippedPluginFolder()) {
+Program::Program(const std::vector<std::string>& plugins)
+    : plugins_(registry_, pluginFolders(plugins), runtime::shippedPluginFolder()) {
   dsl::addStructureElements(registry_);
   tasks::registerBuiltIns(registry_);
   for (const std::string& path : plugins) {
@@ -125,8 +126,8 @@ dsl::Stack Program::read(const StackOptions& options, std::vector<dsl::Diagnosti
   if (options.duration) {
     const double rate = stack.controller.values.real("rate");
     if (std::lround(*options.duration * rate) < 1) {
-      throw UsageError("--duration " + rounded(*options.duration) + " is shorter than one tick of " + rounded(1 / rate) +
-                       " s");
+      throw UsageError("--duration " + rounded(*options.duration) + " is shorter than one tick of " +
+                       rounded(1 / rate) + " s");
     }
     stack.run.duration = *options.duration;
   }

@@ -119,7 +119,8 @@ std::string drawTouchedPoints(const RunData& data) {
   if (data.touched.rows() == 0) return svgDocument(1100, 60, note("Nothing was touched.", {0, 0, 1100, 60}));
   const Cloud cloud = touchedCloud(data.touched);
   const auto view = [&](const std::string& title, const std::string& x_label, const std::string& y_label,
-                        const std::vector<double>& x, const std::vector<double>& y, size_t horizontal, size_t vertical) {
+                        const std::vector<double>& x, const std::vector<double>& y, size_t horizontal,
+                        size_t vertical) {
     return PointPlot{title,           x_label,          y_label, x, y, cloud.height_mm, cloud.height_max, vertical != 2,
                      featureMarkers(data, horizontal, vertical, cloud.plane)};
   };

@@ -8,7 +8,7 @@
 namespace tactus::app {
 
 inline constexpr const char* run_format = "tactus-run/1";
-inline constexpr const char* status_running = "running";         ///< before the run's end, and for ever when it is killed
+inline constexpr const char* status_running = "running";         ///< until the run ends; for ever when it is killed
 
 /// runs/<stack>-<back end>-seed<N>
 std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_end_label);

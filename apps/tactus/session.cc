@@ -106,8 +106,8 @@ std::vector<std::string> Session::warnings() const {
   long unusable = 0;
   for (const runtime::UnusableTask& task : statistics_.unusableTasks()) {
     unusable += task.ticks;
-    warnings.push_back("task '" + task.name + "' gave numbers that are not finite, or too large to work with, first at t = " +
-                       control::formatNumber(task.first_time) + " s: " + std::to_string(task.ticks) +
+    warnings.push_back("task '" + task.name + "' gave numbers that are not finite, or too large to work with, first at " +
+                       "t = " + control::formatNumber(task.first_time) + " s: " + std::to_string(task.ticks) +
                        " ticks fell back");
   }
   if (const long others = statistics_.fallbacks - unusable; others > 0) {

@@ -1,10 +1,14 @@
 #include "apps/tactus/targets.h"
 
+#include <cmath>
+
 #include "apps/tactus/text.h"
 
 namespace tactus::app {
 
-bool Target::metBy(double value) const { return value == value && (!lower || value >= *lower) && (!upper || value <= *upper); }
+bool Target::metBy(double value) const {
+  return !std::isnan(value) && (!lower || value >= *lower) && (!upper || value <= *upper);
+}
 
 std::string Target::text() const {
   if (lower && upper) return rounded(*lower) + " – " + rounded(*upper);

@@ -14,7 +14,7 @@ struct Abilities {
   bool torque_limits = false;
   bool force_bounds = false;
   bool friction_cones = false;
-  bool strict_first_level = false;                                 ///< the first level is strict even without strict_levels
+  bool strict_first_level = false;                                 ///< the first level is, even without strict_levels
   std::string why_not_strict = {};                                 ///< said where a level asks to be strict and is not
 };
 

@@ -35,9 +35,10 @@ class TickError : public std::runtime_error {
 /// What a tick did besides its torque.
 struct TickRecord {
   Status status = Status::ok;
-  bool fallback = false;                                           ///< the back end failed: its fallback, or b + g alone, was held
-  bool limited = false;                                            ///< the torque was scaled or cut into the actuators' limits
-  const std::string* unusable_task = nullptr;                      ///< whose rows made the tick fall back; lives as long as the controller
+  bool fallback = false;                                           ///< the back end failed: its fallback, or b + g, was held
+  bool limited = false;                                            ///< the torque was scaled or cut into its limits
+  /// The task whose rows made the tick fall back; lives as long as the controller.
+  const std::string* unusable_task = nullptr;
 };
 
 /// The compiled stack: signals in dependency order, levels of tasks, one back end.

@@ -34,7 +34,7 @@ class RunStatistics final : public Observer {
 
   long fallbacks = 0;                                              ///< the back end failed; another torque was held
   long infeasible = 0;
-  long limited = 0;                                                ///< the torque was scaled or cut into the actuators' limits
+  long limited = 0;                                                ///< the torque was scaled or cut into its limits
   long lost_rank = 0;                                              ///< a level's rows were dependent or faded
   bool has_kkt = false;
   control::KktResidual kkt_max;                                    ///< worst of the run, each of its own tick

@@ -16,7 +16,7 @@ TEST(Tick, OfTheMainExampleTakesNoMemory) {
   control::Registry registry;
   dsl::addStructureElements(registry);
   tasks::registerBuiltIns(registry);
-  runtime::PluginLoader(registry, {}).loadFolder(SHIPPED_PLUGINS);
+  runtime::PluginLoader(registry, {}, SHIPPED_PLUGINS).loadFolder(SHIPPED_PLUGINS);
   dsl::ReadOptions options;
   options.model_path = {TACTUS_SOURCE_DIR "/models"};
   const dsl::Stack stack = dsl::readStack(TACTUS_SOURCE_DIR "/examples/explore_table/stack.xml", registry, options);
