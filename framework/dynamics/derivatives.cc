@@ -2,6 +2,7 @@
 
 #include "framework/dynamics/crba.h"
 #include "framework/dynamics/rnea.h"
+#include "framework/dynamics/skew.h"
 
 // When coordinate k moves, all that hangs on body k turns with the screw S_k.  Were velocities and accelerations turned
 // along with it, every force would just turn too: S_k ×* f.  They are not, for the part that the bodies before k give
@@ -13,12 +14,6 @@
 // for every body j of the subtree of k; I and B add up over subtrees, and τ_i = S_iᵀ Σ f.
 namespace tactus::dynamics {
 namespace {
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return matrix;
-}
 
 /// v × as a matrix, (2.33); that of v ×* is −(v ×)ᵀ.
 Matrix6d crossMatrix(const MotionVector& v) {

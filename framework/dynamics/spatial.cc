@@ -1,15 +1,8 @@
 #include "framework/dynamics/spatial.h"
 
+#include "framework/dynamics/skew.h"
+
 namespace tactus::dynamics {
-namespace {
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return matrix;
-}
-
-}  // namespace
 
 MotionVector transform(const Eigen::Isometry3d& X_AB, const MotionVector& m_B) {
   const Eigen::Vector3d angular = X_AB.linear() * m_B.angular();

@@ -4,7 +4,7 @@
 
 #include "framework/dynamics/rnea.h"
 #include "tests/dynamics/energy.h"
-#include "tests/dynamics/random_state.h"
+#include "tests/dynamics/free_swing.h"
 
 // Laws: the articulated-body algorithm undoes the Newton–Euler one, and a free swing keeps its energy.  Then a pendulum
 // whose period is known, and free fall.
@@ -26,26 +26,6 @@ TEST(Aba, UndoesInverseDynamics) {
   });
 }
 
-/// One step of the classical Runge–Kutta method, no torque at the joints.
-void swing(RandomState& state, double h) {
-  struct Rate {
-    Eigen::VectorXd q, qd;
-  };
-  const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
-    Rate r{Eigen::VectorXd(q.size()), Eigen::VectorXd(qd.size())};
-    positionRates(state.model, q, qd, r.q);
-    aba(state.model, q, qd, Eigen::VectorXd::Zero(state.model.dof()), state.gravity_W, state.workspace, r.qd);
-    return r;
-  };
-  const Rate a = rate(state.q, state.qd);
-  const Rate b = rate(state.q + h / 2 * a.q, state.qd + h / 2 * a.qd);
-  const Rate c = rate(state.q + h / 2 * b.q, state.qd + h / 2 * b.qd);
-  const Rate d = rate(state.q + h * c.q, state.qd + h * c.qd);
-  state.q += h / 6 * (a.q + 2 * b.q + 2 * c.q + d.q);
-  state.qd += h / 6 * (a.qd + 2 * b.qd + 2 * c.qd + d.qd);
-  normalise(state.model, state.q);
-}
-
 TEST(Aba, AFreeSwingKeepsItsEnergy) {
   Random random(62);
   for (int trial = 0; trial < 10; ++trial) {
@@ -58,8 +38,9 @@ TEST(Aba, AFreeSwingKeepsItsEnergy) {
     };
     const Eigen::Vector2d start = energies();
     double exchanged = 0;
+    FreeSwing swing(state);
     for (int step = 0; step < 2000; ++step) {
-      swing(state, 2e-4);
+      swing.step(2e-4);
       exchanged = std::max(exchanged, std::abs(energies()[0] - start[0]));
     }
     EXPECT_GT(exchanged, 0.1);                                     // J: it did swing
@@ -87,9 +68,10 @@ TEST(Aba, PendulumHasThePeriodOfTheEllipticIntegral) {
     a = mean;
   }
   const double period = 2 * std::numbers::pi / (std::sqrt(m * g * l / (inertia + m * l * l)) * a);
-  for (int step = 0; step < 1000; ++step) swing(state, period / 2000);
+  FreeSwing swing(state);
+  for (int step = 0; step < 1000; ++step) swing.step(period / 2000);
   EXPECT_NEAR(state.q[0], -amplitude, 1e-9);                       // the other side, after half a period
-  for (int step = 0; step < 1000; ++step) swing(state, period / 2000);
+  for (int step = 0; step < 1000; ++step) swing.step(period / 2000);
   EXPECT_NEAR(state.q[0], amplitude, 1e-9);
   EXPECT_NEAR(state.qd[0], 0, 1e-8);
 }

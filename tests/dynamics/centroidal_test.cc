@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "framework/description/combine.h"
-#include "framework/dynamics/aba.h"
 #include "framework/dynamics/crba.h"
 #include "tests/dynamics/energy.h"
-#include "tests/dynamics/random_state.h"
+#include "tests/dynamics/free_swing.h"
 
 // The robot as one body, against sums over the links of the description, and against differences in time.
 namespace tactus::dynamics {
@@ -84,29 +83,15 @@ TEST(Centroidal, AFloatingTreeKeepsItsMomentumAndEnergy) {
   Random random(124);
   for (int trial = 0; trial < 5; ++trial) {
     RandomState state(description::withFloatingBase(test_robots::lwr()), random);
-    const Eigen::VectorXd none = Eigen::VectorXd::Zero(state.model.dof());
-    struct Rate {
-      Eigen::VectorXd q, qd;
-    };
-    const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
-      Rate r{Eigen::VectorXd(q.size()), Eigen::VectorXd(qd.size())};
-      positionRates(state.model, q, qd, r.q);
-      aba(state.model, q, qd, none, Eigen::Vector3d::Zero(), state.workspace, r.qd);
-      return r;
-    };
+    state.gravity_W.setZero();
+    FreeSwing swing(state);
     sweep(state, state.q, state.qd);
     const Vector6d start = momentum(state.model, state.workspace);
     const double energy = kineticEnergy(state.model, state.workspace);
     const Eigen::Vector3d from = centreOfMass(state.model, state.workspace);
     const double h = 5e-4;
     constexpr int steps = 4000;
-    for (int k = 0; k < steps; ++k) {
-      const Rate a = rate(state.q, state.qd), b = rate(state.q + h / 2 * a.q, state.qd + h / 2 * a.qd),
-                 c = rate(state.q + h / 2 * b.q, state.qd + h / 2 * b.qd), d = rate(state.q + h * c.q, state.qd + h * c.qd);
-      state.q += h / 6 * (a.q + 2 * b.q + 2 * c.q + d.q);
-      state.qd += h / 6 * (a.qd + 2 * b.qd + 2 * c.qd + d.qd);
-      normalise(state.model, state.q);
-    }
+    for (int k = 0; k < steps; ++k) swing.step(h);
     sweep(state, state.q, state.qd);
     EXPECT_TRUE(near(momentum(state.model, state.workspace), start, 1e-7));
     EXPECT_NEAR(kineticEnergy(state.model, state.workspace), energy, 1e-7 * energy);

@@ -5,7 +5,7 @@
 #include "framework/dynamics/crba.h"
 #include "framework/dynamics/derivatives.h"
 #include "framework/dynamics/rnea.h"
-#include "tests/dynamics/random_state.h"
+#include "tests/dynamics/free_swing.h"
 
 // Laws that need several algorithms at once, and the corners where numbers get hard: long swings, masses nine orders of
 // magnitude apart, stretched arms, a base far from the origin.  Each says how well the dynamics stand there.
@@ -41,17 +41,7 @@ TEST(Trust, RateOfTheMassMatrixLessTwiceCoriolisIsSkew) {
 double energyDrift(const description::Robot& robot, std::uint64_t seed, double duration, double h) {
   Random random(seed);
   RandomState state(robot, random);
-  ForwardDynamics forward(state.model);
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(state.model.dof());
-  struct Rate {
-    Eigen::VectorXd q, qd;
-  };
-  const auto rate = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
-    Rate r{Eigen::VectorXd(q.size()), Eigen::VectorXd(qd.size())};
-    positionRates(state.model, q, qd, r.q);
-    forward.compute(q, qd, none, state.gravity_W, state.workspace, r.qd);
-    return r;
-  };
+  FreeSwing swing(state);
   const auto energies = [&] {
     forwardKinematics(state.model, state.q, state.workspace);
     forwardVelocities(state.model, state.qd, state.workspace);
@@ -66,11 +56,7 @@ double energyDrift(const description::Robot& robot, std::uint64_t seed, double d
   double exchanged = 0;
   const int steps = static_cast<int>(std::lround(duration / h));
   for (int k = 0; k < steps; ++k) {
-    const Rate a = rate(state.q, state.qd), b = rate(state.q + h / 2 * a.q, state.qd + h / 2 * a.qd),
-               c = rate(state.q + h / 2 * b.q, state.qd + h / 2 * b.qd), d = rate(state.q + h * c.q, state.qd + h * c.qd);
-    state.q += h / 6 * (a.q + 2 * b.q + 2 * c.q + d.q);
-    state.qd += h / 6 * (a.qd + 2 * b.qd + 2 * c.qd + d.qd);
-    normalise(state.model, state.q);
+    swing.step(h);
     if (k % 20 == 0) exchanged = std::max(exchanged, std::abs(energies()[0] - start[0]));
   }
   return std::abs(energies().sum() - start.sum()) / exchanged;
