@@ -10,7 +10,7 @@ namespace {
 ForceVector bodyForce(const Model::Body& body, const BodyState& state) {
   const Eigen::Vector3d c_W = state.p_WB + state.R_WB * body.centre_of_mass;
   const Eigen::Vector3d& w_W = state.velocity.angular();
-  const Eigen::Vector3d acceleration = state.acceleration.at(c_W) + w_W.cross(state.velocity.at(c_W));
+  const Eigen::Vector3d acceleration = plusCross(state.acceleration.at(c_W), w_W, state.velocity.at(c_W));
   const Eigen::Vector3d w_B = state.R_WB.transpose() * w_W;
   const Eigen::Vector3d angular_acceleration_B = state.R_WB.transpose() * state.acceleration.angular();
   const Eigen::Vector3d angular_momentum_B = body.central_inertia * w_B;

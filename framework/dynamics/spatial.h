@@ -12,6 +12,11 @@ namespace tactus::dynamics {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+/// u + a × b, row by row: summed as vectors, Eigen keeps a × b in memory for an instant and the processor waits.
+inline Eigen::Vector3d plusCross(const Eigen::Vector3d& u, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return {u[0] + (a[1] * b[2] - a[2] * b[1]), u[1] + (a[2] * b[0] - a[0] * b[2]), u[2] + (a[0] * b[1] - a[1] * b[0])};
+}
+
 /// A spatial force, an element of F⁶.
 class ForceVector {
  public:
@@ -56,18 +61,18 @@ class MotionVector {
   Vector6d coordinates() const { return (Vector6d() << linear_, angular_).finished(); }
 
   /// Velocity of the body point now at p.
-  Eigen::Vector3d at(const Eigen::Vector3d& p) const { return linear_ + angular_.cross(p); }
+  Eigen::Vector3d at(const Eigen::Vector3d& p) const { return plusCross(linear_, angular_, p); }
 
   /// Scalar product M⁶ × F⁶: power, when this is a velocity.
   double dot(const ForceVector& f) const { return linear_.dot(f.force()) + angular_.dot(f.moment()); }
 
   /// v × m, (2.33): rate of change of m when it is fixed to a body that moves with v.
   MotionVector cross(const MotionVector& m) const {
-    return {angular_.cross(m.linear_) + linear_.cross(m.angular_), angular_.cross(m.angular_)};
+    return {plusCross(angular_.cross(m.linear_), linear_, m.angular_), angular_.cross(m.angular_)};
   }
   /// v ×* f, (2.34).
   ForceVector cross(const ForceVector& f) const {
-    return {angular_.cross(f.force()), angular_.cross(f.moment()) + linear_.cross(f.force())};
+    return {angular_.cross(f.force()), plusCross(angular_.cross(f.moment()), linear_, f.force())};
   }
 
   MotionVector& operator+=(const MotionVector& other) {
@@ -113,8 +118,8 @@ struct RigidBodyInertia {
   }
   /// Momentum I v, or the force I a.
   friend ForceVector operator*(const RigidBodyInertia& I, const MotionVector& v) {
-    return {I.mass * v.linear() + v.angular().cross(I.first_moment),
-            I.rotational * v.angular() + I.first_moment.cross(v.linear())};
+    return {plusCross(I.mass * v.linear(), v.angular(), I.first_moment),
+            plusCross(I.rotational * v.angular(), I.first_moment, v.linear())};
   }
 };
 
