@@ -1,6 +1,8 @@
 #pragma once
 
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "framework/control/tick_problem.h"
 #include "framework/control/tick_solution.h"
@@ -18,6 +20,16 @@ struct Abilities {
   std::string why_not_strict = {};                                 ///< said where a level asks to be strict and is not
 };
 
+/// How much work one tick may take.  A back end that comes to its end leaves what it has: status `failed`, `late`, and
+/// the torque of the strictly higher levels that it has settled.
+struct Deadline {
+  int iterations = std::numeric_limits<int>::max();                ///< of its solver, so that runs repeat
+  double seconds = std::numeric_limits<double>::infinity();        ///< wall clock; runs then need not repeat
+};
+
+/// What a back end carries from one tick to the next, as plain numbers of its own.
+using WarmStart = std::vector<int>;
+
 /// Turns a tick problem into a torque.
 ///
 /// `prepare` takes the memory for every problem of the given shape (same levels, tasks and capacities);
@@ -31,14 +43,22 @@ class BackEnd {
   void prepare(const TickProblem& shape, TickSolution& solution);
   void solve(const TickProblem& problem, TickSolution& solution) { doSolve(problem, solution); }
 
+  void setDeadline(const Deadline& deadline) { deadline_ = deadline; }
+  /// The state that, with the problem, decides the next solution to the bit; empty where every tick starts afresh.
+  /// `setWarmStart` after `prepare`; what does not fit the shape is ignored.
+  virtual WarmStart warmStart() const { return {}; }
+  virtual void setWarmStart(const WarmStart&) {}
+
  protected:
   explicit BackEnd(Abilities abilities) : abilities_(std::move(abilities)) {}
+  const Deadline& deadline() const { return deadline_; }
 
  private:
   virtual void doPrepare(const TickProblem& shape) = 0;
   virtual void doSolve(const TickProblem& problem, TickSolution& solution) = 0;
 
   Abilities abilities_;
+  Deadline deadline_;
 };
 
 }  // namespace tactus::control

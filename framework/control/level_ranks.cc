@@ -10,6 +10,7 @@ void resetSolution(const TickProblem& problem, TickSolution& solution) {
   solution.torque.setZero();
   solution.n_contact_forces = 0;
   solution.scale = 1;
+  solution.late = false;
   solution.has_kkt = false;
   solution.iterations = 0;
   solution.rows_held = solution.rows_released = solution.rank_deficient_levels = 0;

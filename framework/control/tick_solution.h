@@ -41,6 +41,7 @@ struct TickSolution {
   int n_contact_forces = 0;
   std::vector<LevelReport> levels;
   double scale = 1;                                                ///< uniform scaling into the torque limits, 1 = none
+  bool late = false;                                               ///< the deadline came before the answer; status is `failed`
   bool has_kkt = false;
   KktResidual kkt;
   int iterations = 0;
