@@ -226,8 +226,8 @@ void warnOfLostDigits(const description::Robot& robot, const dynamics::Model& mo
   warning.code = dsl::code::lost_digits.id;
   warning.place = loser->place;
   warning.message = "the inertia at joint '" + loser->name + "' keeps about " +
-                    counted(static_cast<size_t>(-std::log10(worst)), "digit", "digits") + " of 16: what it carries lies " +
-                    rounded(distance, 3) + " m from the world's origin, bring it nearer";
+                    counted(static_cast<size_t>(-std::log10(worst)), "digit", "digits") +
+                    " of 16: what it carries lies " + rounded(distance, 3) + " m from the world's origin, bring it nearer";
   std::cerr << dsl::render(warning) << "\n";
 }
 
@@ -356,8 +356,9 @@ numbers of --q and joints those of --qd, --qdd and --tau, which are fewer when t
 joints that follow others have none and are listed as driven; a limit of null is none.  Without --q every joint is at
 0.  bias holds Coriolis, centrifugal and gravity torques; Jacobians have linear rows
 first, in world axes, at the link's origin; mass and centre_of_mass are of all links, those fixed to the base too; the
-potential energy is 0 at the world's origin.  A robot without masses is kinematics_only: it has no key after that but frames, and --qdd and --tau
-are refused.  A result that is not finite, or a mass matrix that rounding has eaten, ends with exit code 5.
+potential energy is 0 at the world's origin.  A robot without masses is kinematics_only: it has no key after that but
+frames, and --qdd and --tau are refused.  A result that is not finite, or a mass matrix that rounding has eaten, ends
+with exit code 5.
 A floating joint has x,y,z and a quaternion w,x,y,z among the positions, and among the rates the velocity of its child's
 origin in the axes that the joint starts from (of a base: the world's) and the angular velocity in the axes of the child;
 a spherical joint has the quaternion and the angular velocity alone, a planar one x,y and an angle.
