@@ -227,7 +227,8 @@ void warnOfLostDigits(const description::Robot& robot, const dynamics::Model& mo
   warning.place = loser->place;
   warning.message = "the inertia at joint '" + loser->name + "' keeps about " +
                     counted(static_cast<size_t>(-std::log10(worst)), "digit", "digits") +
-                    " of 16: what it carries lies " + rounded(distance, 3) + " m from the world's origin, bring it nearer";
+                    " of 16: what it carries lies " + rounded(distance, 3) +
+                    " m from the world's origin, bring it nearer";
   std::cerr << dsl::render(warning) << "\n";
 }
 
