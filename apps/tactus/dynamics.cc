@@ -355,9 +355,9 @@ offset}}, q, kinematics_only, mass_matrix, bias, gravity, inverse_dynamics, forw
 centre_of_mass, kinetic_energy, potential_energy, frames: {link: {position, rotation, jacobian}}}: positions names the
 numbers of --q and joints those of --qd, --qdd and --tau, which are fewer when the robot has ball joints or floats;
 joints that follow others have none and are listed as driven; a limit of null is none.  Without --q every joint is at
-0.  bias holds Coriolis, centrifugal and gravity torques; Jacobians have linear rows
-first, in world axes, at the link's origin; mass and centre_of_mass are of all links, those fixed to the base too; the
-potential energy is 0 at the world's origin.  A robot without masses is kinematics_only: it has no key after that but
+0.  bias holds Coriolis, centrifugal and gravity torques; Jacobians have linear rows first, in world axes, at the link's
+origin; mass and centre_of_mass are of all links, those fixed to the base too; the potential energy is 0 at the world's
+origin.  A robot without masses is kinematics_only: it has no key after that but
 frames, and --qdd and --tau are refused.  A result that is not finite, or a mass matrix that rounding has eaten, ends
 with exit code 5.
 A floating joint has x,y,z and a quaternion w,x,y,z among the positions, and among the rates the velocity of its child's

@@ -430,8 +430,8 @@ TEST(ReadRobot, JointTypesAndLimits) {
               ElementsAre("10:19 E084 the lower limit 0.5 lies above the upper limit, which is not given and therefore "
                           "0"));
   EXPECT_THAT(findings(changed("lower=\"-1\" upper=\"1\"", "upper=\"-0.5\"")),
-              ElementsAre("10:19 E084 the upper limit -0.5 lies below the lower limit, which is not given and therefore "
-                          "0"));
+              ElementsAre("10:19 E084 the upper limit -0.5 lies below the lower limit, which is not given and "
+                          "therefore 0"));
   std::string continuous = changed("revolute", "continuous");
   continuous.replace(continuous.find(" upper=\"1\""), 10, "").replace(continuous.find("lower=\"-1\""), 10,
                                                                         "lower=\"1\"");
