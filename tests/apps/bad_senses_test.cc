@@ -57,18 +57,28 @@ class Watch final : public runtime::Observer {
   bool finite = true;
   double largest = 0, largest_step = 0;                            // of the effort limit
   long contacts_seen = 0;
+  long switches = 0;                                               // of ranks of the first level
+  long jerks = 0;                                                  // steps beyond 0.1 % of the limit, after 1 s
 
   void observe(const runtime::ObservedTick& tick) override {
     const Eigen::ArrayXd share = tick.torque.array() / tick.controller.model().effort().array();
     finite = finite && share.allFinite();
     largest = std::max(largest, share.abs().maxCoeff());
-    if (last_.size() > 0) largest_step = std::max(largest_step, (share - last_).abs().maxCoeff());
+    const int rank = tick.controller.solution().levels[0].rank;
+    if (last_.size() > 0) {
+      const double step = (share - last_).abs().maxCoeff();
+      largest_step = std::max(largest_step, step);
+      if (tick.sensed.time > 1) jerks += step > 1e-3;
+      if (tick.sensed.time > 1) switches += rank != last_rank_;
+    }
+    last_rank_ = rank;
     last_ = share;
     contacts_seen += !tick.sensed.contacts.empty();
   }
 
  private:
   Eigen::ArrayXd last_;
+  int last_rank_ = 0;
 };
 
 struct Outcome {
@@ -208,6 +218,21 @@ TEST_P(BadSenses, APatchThatFallsSilentLooksLikeNoContact) {
                                .duration = 2});
   EXPECT_GT(outcome.watch.contacts_seen, 100);
   EXPECT_THAT(outcome.statistics.warnings(), ElementsAre());
+}
+
+TEST_P(BadSenses, AContactThatComesAndGoesEveryTickDoesNotMakeTheTorqueChatter) {
+  const auto flicker = [ticks = 0](Sensed& sensed) mutable {
+    if (sensed.time > 1 && ++ticks % 2) sensed.contacts.clear();
+  };
+  const Outcome steady = run({.fault = flicker, .duration = 2});
+  EXPECT_EQ(steady.watch.switches, 0) << "the signal's hold, 5 ms, keeps the contact";
+  EXPECT_EQ(steady.watch.jerks, 0);
+  // Without hysteresis it would.
+  std::string error;
+  const control::AttributeRow& hold = *stack.signals[0].values.row().attribute("hold");
+  stack.signals[0].values.set("hold", *control::parseValue(hold, "0", error));
+  const Outcome chattering = run({.fault = flicker, .duration = 2});
+  EXPECT_GT(chattering.watch.switches, 500);
 }
 
 TEST_P(BadSenses, AModelOfTheWrongMassStaysWithinLimits) {
