@@ -99,7 +99,7 @@ class Compiler {
     errors_.throwIfAny();
     try {
       return std::make_unique<control::Controller>(model_, std::move(signals_), std::move(levels), std::move(back_end),
-                                                   period_, stack_.gravity);
+                                                   period_, stack_.gravity, controllerOptions());
     } catch (const std::exception& error) {
       errors_.addAt(code::refused_by_factory, stack_.controller, "backend", error.what());
     }
@@ -210,12 +210,44 @@ class Compiler {
     return nullptr;
   }
 
+  control::ControllerOptions controllerOptions() const {
+    const ElementValues& values = stack_.controller.values;
+    control::ControllerOptions options;
+    if (values.has("torque-rate")) options.torque_rate = values.real("torque-rate");
+    options.ramp = values.real("ramp");
+    options.hold = values.real("hold");
+    if (values.has("deadline-iterations")) options.deadline.iterations = values.integer("deadline-iterations");
+    if (values.has("deadline-us")) options.deadline.seconds = 1e-6 * values.real("deadline-us");
+    return options;
+  }
+
+  /// When the task or level takes part; the reason in `errors_` where its port refuses.
+  control::Activation activationOf(const ElementInstance& element) {
+    const ElementValues& values = element.values;
+    control::ActiveWhen when;
+    when.ramp = (values.has("active-ramp") ? values : stack_.controller.values)
+                    .real(values.has("active-ramp") ? "active-ramp" : "ramp");
+    if (values.has("active-from")) when.from = values.real("active-from");
+    if (values.has("active-until")) when.until = values.real("active-until");
+    const std::string& active = values.text("active");
+    when.active = active != "false";
+    if (active == "true" || active == "false") return control::Activation(when);
+    try {
+      when.on = static_cast<const double*>(port(element, "active", active, control::PortType<double>::name));
+    } catch (const SignalFailed&) {
+    } catch (const ElementError& error) {
+      errors_.addElementError(element, error);
+    }
+    return control::Activation(when);
+  }
+
   std::vector<control::Level> makeLevels(const control::Abilities* abilities) {
     std::vector<control::Level> levels;
     for (const LevelDescription& description : stack_.levels) {
       control::Level level;
       level.priority = description.priority;
       level.weight = description.weight;
+      level.activation = activationOf(description.element);
       if (abilities) checkStrictness(description, levels.empty(), *abilities);
       for (const ElementInstance& element : description.tasks) {
         auto task = make<control::Task>(element, [&](const control::BuildContext& context) {
@@ -228,7 +260,7 @@ class Compiler {
           continue;
         }
         if (abilities) checkAbilities(element, *task, *abilities);
-        level.tasks.push_back({element.name, std::move(task)});
+        level.tasks.push_back({element.name, std::move(task), activationOf(element)});
       }
       levels.push_back(std::move(level));
     }

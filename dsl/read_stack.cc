@@ -219,7 +219,8 @@ class StackReader {
   void readLevels(const CheckedElement& root) {
     for (const CheckedElement* element : root.all("level")) {
       LevelDescription level;
-      level.place = element->xml->place();
+      level.element = {element->values, "", element->xml->place(), element->xml->path()};
+      checkActivity(*element);
       if (element->values.has("weight")) level.weight = element->values.real("weight");
       if (element->values.has("strict")) {
         level.strict = element->values.flag("strict");
@@ -234,9 +235,26 @@ class StackReader {
                                      ": the levels of a stack rise strictly");
       }
       for (const CheckedElement& task : element->children)
-        if (task.row->kind == ElementKind::task) level.tasks.push_back(instanceOf(task));
+        if (task.row->kind == ElementKind::task) {
+          level.tasks.push_back(instanceOf(task));
+          checkActivity(task);
+        }
       if (element->values.has("priority")) stack_.levels.push_back(std::move(level));
     }
+  }
+
+  /// A window that never opens is a mistake.
+  void checkActivity(const CheckedElement& element) {
+    if (!element.values.has("active-from") || !element.values.has("active-until")) return;
+    const double from = element.values.real("active-from"), until = element.values.real("active-until");
+    if (until > from) return;
+    const XmlAttribute* written = element.xml->attribute("active-until");
+    const std::string message = "attribute 'active-until': " + control::formatNumber(until) + " s is not after " +
+                                control::formatNumber(from) + " s, where active-from opens the window";
+    if (written)
+      findings_.errorAtValue(code::bad_value, *element.xml, *written, message);
+    else
+      findings_.error(code::bad_value, *element.xml, message);
   }
 
   void readController(const CheckedElement& element) {
@@ -406,8 +424,10 @@ class StackReader {
     for (const CheckedElement* list : root.all("signals"))
       for (const CheckedElement& signal : list->children) signals.push_back(&signal);
     for (const CheckedElement* signal : signals) references.check(*signal);
-    for (const CheckedElement* level : root.all("level"))
+    for (const CheckedElement* level : root.all("level")) {
+      references.check(*level);
       for (const CheckedElement& task : level->children) references.check(task);
+    }
     references.warnOfUnusedSignals(signals);
   }
 

@@ -103,6 +103,7 @@ void ReferenceChecker::checkWords(const CheckedElement& element, const Attribute
 
 void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeRow& row) {
   const std::string& text = element.values.text(row.name);
+  if (contains(row.choices, text)) return;
   const std::size_t dot = text.find('.');
   const std::string signal = text.substr(0, dot), port = text.substr(dot + 1);
   const auto found = std::find_if(stack_.signals.begin(), stack_.signals.end(),

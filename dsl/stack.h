@@ -20,11 +20,11 @@ struct ElementInstance {
 };
 
 struct LevelDescription {
+  ElementInstance element;                                         ///< its attributes, and where it stands
   int priority = 1;
   std::optional<double> weight;
   bool strict = false;
   std::vector<ElementInstance> tasks;
-  description::Place place;
   description::Place strict_place;                                 ///< of the value of `strict`, where it is written
 };
 

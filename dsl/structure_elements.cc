@@ -152,25 +152,27 @@ ElementRow signalsRow() {
 }
 
 ElementRow levelRow() {
-  return {.name = "level",
-          .kind = ElementKind::structure,
-          .description = "Tasks of one priority.  Lower levels must not disturb those above.",
-          .attributes = {{.name = "priority",
-                          .type = ValueType::integer,
-                          .required = true,
-                          .description = "1 is the highest; the levels of a stack rise strictly.",
-                          .lower = 1},
-                         {.name = "weight",
-                          .type = ValueType::real,
-                          .unit = "1",
-                          .description = "For weighted back ends; not given: by their ratio.",
-                          .lower = 0,
-                          .lower_open = true},
-                         {.name = "strict",
-                          .type = ValueType::flag,
-                          .default_text = "false",
-                          .description = "Refuse back ends that would only weigh this level against others."}},
-          .children = {{"@task", 1}, {"include"}}};
+  ElementRow row{.name = "level",
+               .kind = ElementKind::structure,
+               .description = "Tasks of one priority.  Lower levels must not disturb those above.",
+               .attributes = {{.name = "priority",
+                               .type = ValueType::integer,
+                               .required = true,
+                               .description = "1 is the highest; the levels of a stack rise strictly.",
+                               .lower = 1},
+                              {.name = "weight",
+                               .type = ValueType::real,
+                               .unit = "1",
+                               .description = "For weighted back ends; not given: by their ratio.",
+                               .lower = 0,
+                               .lower_open = true},
+                              {.name = "strict",
+                               .type = ValueType::flag,
+                               .default_text = "false",
+                               .description = "Refuse back ends that would only weigh this level against others."}},
+               .children = {{"@task", 1}, {"include"}}};
+  for (AttributeRow& attribute : control::activityAttributes()) row.attributes.push_back(std::move(attribute));
+  return row;
 }
 
 ElementRow controllerRow() {
@@ -179,7 +181,26 @@ ElementRow controllerRow() {
           .description = "The back end that solves every tick, with that back end's own options as further attributes.",
           .attributes = {{.name = "backend", .type = ValueType::text, .required = true, .description = "Its name."},
                          {.name = "rate", .type = ValueType::real, .unit = "Hz", .default_text = "1000",
-                          .description = "Ticks per second; a tick is a whole number of the plant's steps.", .lower = 1}},
+                          .description = "Ticks per second; a tick is a whole number of the plant's steps.",
+                          .lower = 1},
+                         {.name = "torque-rate", .type = ValueType::real, .unit = "1/s",
+                          .description = "The most that a joint's torque changes in a second, as a multiple of its "
+                                         "effort limit; not given: without bound.",
+                          .lower = 0, .lower_open = true},
+                         {.name = "ramp", .type = ValueType::real, .unit = "s", .default_text = "0.1",
+                          .description = "Time in which the torque goes over where something is switched.",
+                          .lower = 0},
+                         {.name = "hold", .type = ValueType::real, .unit = "s", .default_text = "0.02",
+                          .description = "Time that the last good value of a joint, or the last solved torque, stands "
+                                         "in where there is none; then the robot's weight is borne.",
+                          .lower = 0},
+                         {.name = "deadline-iterations", .type = ValueType::integer, .unit = "1",
+                          .description = "Iterations that the back end may take for a tick; not given: any number.",
+                          .lower = 1},
+                         {.name = "deadline-us", .type = ValueType::real, .unit = "µs",
+                          .description = "Wall-clock time that the back end may take for a tick; runs then need not "
+                                         "repeat. Not given: any time.",
+                          .lower = 0, .lower_open = true}},
           .children = {{"alternative"}},
           .takes_back_end_options = true};
 }

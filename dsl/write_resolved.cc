@@ -53,6 +53,7 @@ bool isReference(ValueType type) {
 bool isWritten(const AttributeRow& row, const control::Value& value, const std::vector<ElementInstance>& signals) {
   if (row.type == ValueType::element_class) return false;
   if (value.origin.kind != control::Origin::Kind::table_default || !isReference(row.type)) return true;
+  if (std::find(row.choices.begin(), row.choices.end(), value.text) != row.choices.end()) return true;
   const std::size_t dot = value.text.find('.');
   return row.type == ValueType::port && dot != std::string::npos &&
          std::any_of(signals.begin(), signals.end(), [&](const ElementInstance& signal) {
@@ -94,10 +95,7 @@ std::string objectText(const ObjectDescription& object) {
 }
 
 std::string levelText(const LevelDescription& level, const std::vector<ElementInstance>& signals) {
-  std::string out = "  <level";
-  out += attributeText("priority", std::to_string(level.priority));
-  if (level.weight) out += attributeText("weight", control::formatNumber(*level.weight));
-  out += attributeText("strict", level.strict ? "true" : "false") + ">\n";
+  std::string out = "  <level" + attributesOf(level.element.values.row(), level.element.values, signals) + ">\n";
   for (const ElementInstance& task : level.tasks) out += leaf("    ", task.values, signals);
   return out + "  </level>\n";
 }

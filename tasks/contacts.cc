@@ -51,7 +51,8 @@ void Contacts::registerIn(Registry& registry) {
                {"all", "contact-set", "", "Every contact, C."},
                {"missing", "missing-set", "", "Desired links without contact, D\\C."},
                {"points", "touched-points", "m", "Every point touched so far."},
-               {"desired", "frame-set", "", "The desired links, D."}};
+               {"desired", "frame-set", "", "The desired links, D."},
+               {"touching", "scalar", "1", "How many desired links touch."}};
   registry.addSignal(row, [](const BuildContext& context) { return std::make_unique<Contacts>(context); });
 }
 
@@ -186,6 +187,7 @@ const void* Contacts::doPort(std::string_view name) const {
   if (name == "missing") return &missing_;
   if (name == "points") return &points_;
   if (name == "desired") return &desired_;
+  if (name == "touching") return &n_held_;
   return nullptr;
 }
 

@@ -9,11 +9,13 @@ namespace tactus::tasks {
 /// The signal `contacts`: what the skin feels, as the contact sets of the thesis (table 4.1).
 ///
 /// C are the current contacts, D the desired links (attribute `desired`).  Ports:
-/// `held` C∩D, `undesired` C\D, `missing` D\C, `all` C, `points` every point touched so far, `desired` D.
+/// `held` C∩D, `undesired` C\D, `missing` D\C, `all` C, `points` every point touched so far, `desired` D,
+/// `touching` the size of `held`.
 ///
 /// One contact a link reaches the tasks: its point and normal are the force-weighted means of the link's records,
 /// its force their sum.  A link comes into contact when the force stays above `on-force` for `hold`, and leaves it
 /// when the force stays below `off-force` for `hold`; while it lingers, the last contact moves with the link.
+/// So a link comes and goes at most once in two `hold`, and one that flickers faster than `hold` stays as it is.
 /// Links without skin feel nothing.
 class Contacts final : public control::Signal {
  public:

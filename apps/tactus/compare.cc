@@ -80,6 +80,8 @@ ordered_json closedLoop(Session& session, const std::string& label, const std::v
           {"fallbacks", statistics.fallbacks},
           {"infeasible", statistics.infeasible},
           {"limited", statistics.limited},
+          {"rate_limited", statistics.rate_limited},
+          {"late", statistics.late},
           {"lost_rank", statistics.lost_rank},
           {"kkt_max", kktToJson(statistics.has_kkt, statistics.kkt_max)},
           {"warnings", session.warnings()},

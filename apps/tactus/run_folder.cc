@@ -58,6 +58,22 @@ ordered_json describeTargets(const dsl::Stack& stack) {
   return json;
 }
 
+/// A line of those counts that are not 0; "" when all are.
+std::string unusualTicks(const ordered_json& ticks) {
+  constexpr std::pair<const char*, const char*> kinds[] = {{"rate_limited", "kept at the torque rate"},
+                                                           {"late", "past the deadline"},
+                                                           {"partial", "with the upper levels alone"},
+                                                           {"held", "with the last solved torque"},
+                                                           {"gravity", "that bore the weight alone"},
+                                                           {"blind", "without a joint's position"}};
+  std::string text;
+  for (const auto& [key, said] : kinds) {
+    const long count = ticks.value(key, 0L);
+    if (count > 0) text += (text.empty() ? "ticks " : ", ") + std::string(said) + ": " + std::to_string(count);
+  }
+  return text.empty() ? text : text + "\n";
+}
+
 }  // namespace
 
 void writeJson(const std::string& path, const ordered_json& json) {
@@ -123,6 +139,12 @@ ordered_json describeRun(const Session& session, const runtime::LoopResult& resu
                    {"fallback", statistics.fallbacks},
                    {"infeasible", statistics.infeasible},
                    {"limited", statistics.limited},
+                   {"rate_limited", statistics.rate_limited},
+                   {"late", statistics.late},
+                   {"partial", statistics.partial},
+                   {"held", statistics.held},
+                   {"gravity", statistics.gravity},
+                   {"blind", statistics.blind},
                    {"lost_rank", statistics.lost_rank}};
   if (statistics.has_kkt) {
     json["kkt_max"] = {{"stationarity", statistics.kkt_max.stationarity},
@@ -150,6 +172,7 @@ std::string summaryTable(const ordered_json& run) {
     text += std::string(", ") + kind + " " + std::to_string(run["ticks"][kind].get<long>());
   }
   text += "\n";
+  text += unusualTicks(run["ticks"]);
   if (run.contains("kkt_max")) {
     text += "largest KKT residual: stationarity " + rounded(run["kkt_max"]["stationarity"].get<double>(), 3) +
             ", primal " + rounded(run["kkt_max"]["primal"].get<double>(), 3) + "\n";

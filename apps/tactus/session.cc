@@ -102,18 +102,7 @@ std::vector<control::Metric> Session::metrics() const {
 }
 
 std::vector<std::string> Session::warnings() const {
-  std::vector<std::string> warnings;
-  long unusable = 0;
-  for (const runtime::UnusableTask& task : statistics_.unusableTasks()) {
-    unusable += task.ticks;
-    warnings.push_back("task '" + task.name + "' gave numbers that are not finite, or too large to work with, first at " +
-                       "t = " + control::formatNumber(task.first_time) + " s: " + std::to_string(task.ticks) +
-                       " ticks fell back");
-  }
-  if (const long others = statistics_.fallbacks - unusable; others > 0) {
-    warnings.push_back(std::to_string(others) + " of " + std::to_string(statistics_.ticks()) +
-                       " ticks fell back: their problem was infeasible, or the back end failed");
-  }
+  std::vector<std::string> warnings = statistics_.warnings();
   const std::vector<control::Metric> figures = metrics();
   for (const dsl::TargetDescription& target : stack_.run.targets) {
     const bool known = std::any_of(figures.begin(), figures.end(),

@@ -25,6 +25,7 @@ struct Abilities {
 struct Deadline {
   int iterations = std::numeric_limits<int>::max();                ///< of its solver, so that runs repeat
   double seconds = std::numeric_limits<double>::infinity();        ///< wall clock; runs then need not repeat
+  bool isDeclared() const { return iterations < std::numeric_limits<int>::max() || seconds < 1e300; }
 };
 
 /// What a back end carries from one tick to the next, as plain numbers of its own.

@@ -73,41 +73,93 @@ TickProblem makeProblemShape(const dynamics::Model& model, const std::vector<Lev
 
 Controller::Controller(std::shared_ptr<const dynamics::Model> model, std::vector<NamedSignal> signals,
                        std::vector<Level> levels, std::unique_ptr<BackEnd> back_end, double period,
-                       const Eigen::Vector3d& gravity_W)
+                       const Eigen::Vector3d& gravity_W, const ControllerOptions& options)
     : model_(std::move(model)),
       signals_(std::move(signals)),
       levels_(std::move(levels)),
       back_end_(std::move(back_end)),
       period_(period),
+      options_(options),
       cache_(*model_, gravity_W),
+      sensing_(model_->dof(), static_cast<int>(model_->frames().size()), options.hold, period),
       problem_(makeProblemShape(*model_, levels_)),
-      torque_(Eigen::VectorXd::Zero(model_->dof())) {
+      shaper_(model_->effort(), options.torque_rate, period),
+      wanted_(Eigen::VectorXd::Zero(model_->dof())),
+      last_solved_(Eigen::VectorXd::Zero(model_->dof())) {
+  back_end_->setDeadline(options_.deadline);
   back_end_->prepare(problem_, solution_);
 }
 
-const Eigen::VectorXd& Controller::tick(const Sensed& sensed) {
+const Eigen::VectorXd& Controller::tick(const Sensed& raw) {
+  record_ = TickRecord{};
+  const Sensed& sensed = sensing_.check(raw);
+  record_.sensing = sensing_.record();
+  if (record_.sensing.blind)
+    bearWeight(sensed);
+  else
+    solveTick(sensed);
+  applyTorque();
+  return shaper_.torque();
+}
+
+void Controller::solveTick(const Sensed& sensed) {
   cache_.update(sensed.q, sensed.qd);
   const Tick now{sensed.time, period_, sensed, cache_};
   for (const NamedSignal& named : signals_) {
     guarded(now.time, [&] { named.signal->update(now); }, [&] { return "signal '" + named.name + "'"; });
   }
   assembleProblem(now);
-  record_ = TickRecord{};
   guarded(now.time, [&] { back_end_->solve(problem_, solution_); }, [] { return std::string("the back end"); });
-  record_.status = solution_.status;
-  // A torque that is not finite must never reach the robot: hold it against gravity instead.
-  record_.fallback = solution_.status != Status::ok || !solution_.torque.allFinite();
-  if (record_.fallback) record_.unusable_task = findUnusableTask();
-  if (!solution_.torque.allFinite()) solution_.torque.setZero();
+  chooseTorque();
+}
 
-  record_.limited = solution_.scale < 1;
-  const Eigen::VectorXd& effort = model_->effort();
-  for (int i = 0; i < model_->dof(); ++i) {
-    const double wanted = solution_.torque[i] + cache_.bias()[i];
-    torque_[i] = std::fmin(std::fmax(wanted, -effort[i]), effort[i]);
-    if (std::abs(wanted - torque_[i]) > 1e-9 * effort[i]) record_.limited = true;
+void Controller::bearWeight(const Sensed& sensed) {
+  record_.status = Status::failed;
+  record_.source = TorqueSource::gravity;
+  unsolved_for_ += period_;
+  if (sensing_.knowsState()) {
+    cache_.update(sensed.q, sensed.qd);
+    wanted_ = cache_.bias();
+  } else {
+    wanted_.setZero();
   }
-  return torque_;
+}
+
+void Controller::chooseTorque() {
+  record_.status = solution_.status;
+  record_.late = solution_.late;
+  record_.limited = solution_.scale < 1;
+  const bool finite = solution_.torque.allFinite();
+  const bool solved = solution_.status == Status::ok && finite;
+  if (!solved) record_.unusable_task = findUnusableTask();
+  // A torque that is not finite must never reach the robot.
+  if (!finite) solution_.torque.setZero();
+  wanted_ = solution_.torque + cache_.bias();
+  unsolved_for_ = solved ? 0 : unsolved_for_ + period_;
+  if (solved) {
+    record_.source = TorqueSource::solved;
+  } else if (finite && !record_.unusable_task) {
+    record_.source = TorqueSource::partial;
+  } else if (unsolved_for_ <= options_.hold + 1e-9) {
+    record_.source = TorqueSource::held;
+    wanted_ = last_solved_;
+  } else {
+    record_.source = TorqueSource::gravity;
+    wanted_ = cache_.bias();
+  }
+}
+
+void Controller::applyTorque() {
+  const TorqueSource source = record_.source;
+  record_.fallback = source != TorqueSource::solved;
+  // Between the others the torque goes on by itself: `partial` keeps the upper levels, `held` what was applied.
+  const bool bears_weight = source == TorqueSource::gravity;
+  if (bears_weight != bore_weight_) shaper_.startTransfer(options_.ramp);
+  bore_weight_ = bears_weight;
+  shaper_.apply(wanted_);
+  record_.limited = record_.limited || shaper_.limited();
+  record_.rate_limited = shaper_.rateLimited();
+  if (source == TorqueSource::solved) last_solved_ = shaper_.torque();
 }
 
 void Controller::assembleProblem(const Tick& tick) {
@@ -115,16 +167,97 @@ void Controller::assembleProblem(const Tick& tick) {
   problem_.torque_limits->lower = -model_->effort() - cache_.bias();
   problem_.torque_limits->upper = model_->effort() - cache_.bias();
   for (std::size_t i = 0; i < levels_.size(); ++i) {
-    for (std::size_t k = 0; k < levels_[i].tasks.size(); ++k) {
-      const NamedTask& named = levels_[i].tasks[k];
+    Level& level = levels_[i];
+    if (level.activation.advance(tick.time, tick.dt)) shaper_.startTransfer(level.activation.ramp());
+    for (std::size_t k = 0; k < level.tasks.size(); ++k) {
+      NamedTask& named = level.tasks[k];
       TickTask& rows = problem_.levels[i].tasks[k];
-      const auto update = [&] {
-        named.task->update(tick, rows);
-        checkRows(rows, named.task->capacity(), problem_.dof);
-      };
-      guarded(tick.time, update, [&] { return "task '" + named.name + "'"; });
+      if (named.activation.advance(tick.time, tick.dt)) shaper_.startTransfer(named.activation.ramp());
+      if (!level.activation.stands() || !named.activation.stands()) {
+        rows.rows = 0;
+        continue;
+      }
+      fillRows(tick, named, rows);
+      const double share = level.activation.share() * named.activation.share();
+      if (share == 1) continue;
+      rows.force.head(rows.rows) *= share;
+      rows.acceleration.head(rows.rows) *= share;
     }
   }
+}
+
+void Controller::fillRows(const Tick& tick, NamedTask& named, TickTask& rows) {
+  const auto update = [&] {
+    named.task->update(tick, rows);
+    checkRows(rows, named.task->capacity(), problem_.dof);
+  };
+  guarded(tick.time, update, [&] { return "task '" + named.name + "'"; });
+}
+
+Controller::Place Controller::placeOf(std::string_view task) const {
+  std::string known;
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    for (std::size_t k = 0; k < levels_[i].tasks.size(); ++k) {
+      if (levels_[i].tasks[k].name == task) return {i, k};
+      known += (known.empty() ? "" : ", ") + levels_[i].tasks[k].name;
+    }
+  }
+  throw std::invalid_argument("there is no task '" + std::string(task) + "': there are " + known);
+}
+
+std::size_t Controller::levelOf(int priority) const {
+  std::string known;
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    if (levels_[i].priority == priority) return i;
+    known += (known.empty() ? "" : ", ") + std::to_string(levels_[i].priority);
+  }
+  throw std::invalid_argument("there is no level of priority " + std::to_string(priority) + ": there are " + known);
+}
+
+const Activation& Controller::activationOf(std::string_view task) const {
+  const Place at = placeOf(task);
+  return levels_[at.level].tasks[at.task].activation;
+}
+
+void Controller::setActive(std::string_view task, bool active) {
+  const Place at = placeOf(task);
+  levels_[at.level].tasks[at.task].activation.setActive(active);
+}
+
+void Controller::setActive(int priority, bool active) { levels_[levelOf(priority)].activation.setActive(active); }
+
+void Controller::setWeight(int priority, double weight) {
+  const std::size_t level = levelOf(priority);
+  if (!(weight > 0) || !std::isfinite(weight))
+    throw std::invalid_argument("the weight of a level is finite and > 0, not " + formatNumber(weight));
+  levels_[level].weight = problem_.levels[level].weight = weight;
+  shaper_.startTransfer(options_.ramp);
+}
+
+void Controller::setPriority(std::string_view task, int priority) {
+  const Place from = placeOf(task);
+  const std::size_t to = levelOf(priority);
+  if (from.level == to) return;
+  const auto move = [&](auto& tasks_from, auto& tasks_to) {
+    tasks_to.push_back(std::move(tasks_from[from.task]));
+    tasks_from.erase(tasks_from.begin() + static_cast<std::ptrdiff_t>(from.task));
+  };
+  move(levels_[from.level].tasks, levels_[to].tasks);
+  move(problem_.levels[from.level].tasks, problem_.levels[to].tasks);
+  back_end_->prepare(problem_, solution_);
+  shaper_.startTransfer(options_.ramp);
+}
+
+void Controller::setBackEnd(std::unique_ptr<BackEnd> back_end) {
+  if (!back_end) throw std::invalid_argument("a controller needs a back end");
+  for (const Level& level : levels_)
+    for (const NamedTask& named : level.tasks)
+      if (named.task->relation() == Relation::inequality && !back_end->abilities().inequalities)
+        throw std::invalid_argument("task '" + named.name + "' is an inequality, and the back end honours none");
+  back_end->setDeadline(options_.deadline);
+  back_end->prepare(problem_, solution_);
+  back_end_ = std::move(back_end);
+  shaper_.startTransfer(options_.ramp);
 }
 
 const std::string* Controller::findUnusableTask() const {

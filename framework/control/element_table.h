@@ -41,7 +41,7 @@ struct AttributeRow {
   double upper = std::numeric_limits<double>::infinity();
   bool lower_open = false;
   int count = 0;                                             ///< numbers in `reals`, or in a group of `points`; 0 = any
-  std::vector<std::string> choices = {};                   ///< for `choice`; for joints/links: extra words, e.g. "free"
+  std::vector<std::string> choices = {};                   ///< for `choice`; for joints, links, ports: extra words
   std::string port_type = {};                                           ///< for `port`
 };
 

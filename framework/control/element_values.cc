@@ -117,11 +117,13 @@ bool parseNames(const AttributeRow& row, std::string_view text, std::string& err
   return false;
 }
 
-bool parsePort(std::string_view text, std::string& error) {
+bool parsePort(const AttributeRow& row, std::string_view text, std::string& error) {
+  if (std::find(row.choices.begin(), row.choices.end(), text) != row.choices.end()) return true;
   const std::size_t dot = text.find('.');
   if (dot != std::string_view::npos && isIdentifier(text.substr(0, dot)) && isIdentifier(text.substr(dot + 1)))
     return true;
   error = quoted(text) + " does not name a port: expected signal.port, such as 'touch.held'";
+  if (!row.choices.empty()) error += ", or " + listed(row.choices);
   return false;
 }
 
@@ -150,7 +152,7 @@ bool parseText(const AttributeRow& row, const std::string& text, Value& value, s
         if (choice == text) return true;
       error = quoted(text) + " is not one of the choices: expected " + listed(row.choices);
       return false;
-    case ValueType::port: return parsePort(text, error);
+    case ValueType::port: return parsePort(row, text, error);
     case ValueType::links:
     case ValueType::joints: return parseNames(row, text, error);
     case ValueType::link:

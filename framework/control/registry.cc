@@ -57,6 +57,20 @@ void addBaseAttributes(ElementRow& row) {
 
 }  // namespace
 
+std::vector<AttributeRow> activityAttributes() {
+  return {{.name = "active",
+           .type = ValueType::port,
+           .default_text = "true",
+           .description = "Whether it takes part: true, false, or a signal's port: while that is above 0.5.",
+           .choices = {"true", "false"},
+           .port_type = "scalar"},
+          {.name = "active-from", .type = ValueType::real, .unit = "s", .description = "Takes part from this time on."},
+          {.name = "active-until", .type = ValueType::real, .unit = "s", .description = "Takes part before this time."},
+          {.name = "active-ramp", .type = ValueType::real, .unit = "s",
+           .description = "Time in which its forces fade in or out; not given: the ramp of the controller.",
+           .lower = 0}};
+}
+
 int BuildContext::frame(const std::string& attribute) const {
   const std::string& name = values.text(attribute);
   const int index = model.frameIndex(name);
@@ -112,6 +126,8 @@ void Registry::addStructure(ElementRow row) { elements_.add(std::move(row)); }
 void Registry::addTask(ElementRow row, TaskFactory make) {
   row.kind = ElementKind::task;
   addBaseAttributes(row);
+  for (AttributeRow& attribute : activityAttributes())
+    if (!row.attribute(attribute.name)) row.attributes.push_back(std::move(attribute));
   const std::string name = row.name;
   elements_.add(std::move(row));
   tasks_[name] = std::move(make);

@@ -59,6 +59,9 @@ class BuildContext {
   PortLookup ports_;
 };
 
+/// When a task or a level takes part (see ActiveWhen): `active`, `active-from`, `active-until`, `active-ramp`.
+std::vector<AttributeRow> activityAttributes();
+
 using TaskFactory = std::function<std::unique_ptr<Task>(const BuildContext&)>;
 using SignalFactory = std::function<std::unique_ptr<Signal>(const BuildContext&)>;
 /// Values are those of the back end's row.
@@ -69,7 +72,8 @@ using BackEndFactory = std::function<std::unique_ptr<BackEnd>(const ElementValue
 class Registry {
  public:
   void addStructure(ElementRow row);
-  /// Tasks and signals get the attributes `name` (required) and `class` besides their own.
+  /// Tasks and signals get the attributes `name` (required) and `class` besides their own, tasks also those of
+  /// `activityAttributes`.
   void addTask(ElementRow row, TaskFactory make);
   void addSignal(ElementRow row, SignalFactory make);
   void addBackEnd(ElementRow row, BackEndFactory make);

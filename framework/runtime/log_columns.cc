@@ -1,5 +1,7 @@
 #include "framework/runtime/log_columns.h"
 
+#include <cmath>
+
 namespace tactus::runtime {
 
 using control::LevelReport;
@@ -48,6 +50,10 @@ void LogColumns::addTasksAndSignals(const control::Controller& controller) {
       const std::string path = "task/" + named.name + "/";
       add(path + "error", [task = named.task.get()](const ObservedTick&) { return task->error(); });
       addOwn(path, *named.task);
+      if (!named.activation.isConditional() && !level.activation.isConditional()) continue;
+      add(path + "share", [level = &level, name = named.name](const ObservedTick& tick) {
+        return level->activation.share() * tick.controller.activationOf(name).share();
+      });
     }
   }
   for (const control::NamedSignal& named : controller.signals()) {
@@ -68,8 +74,15 @@ void LogColumns::addController(const control::Controller& controller) {
   add("controller/torque_norm", [](const ObservedTick& tick) { return tick.torque.norm(); });
   add("controller/scale", [](const ObservedTick& tick) { return tick.controller.solution().scale; });
   add("controller/status", [](const ObservedTick& tick) { return static_cast<int>(tick.controller.record().status); });
-  add("controller/fallback", [](const ObservedTick& tick) { return tick.controller.record().fallback; });
+  add("controller/fallback",
+      [](const ObservedTick& tick) { return static_cast<int>(tick.controller.record().source); });
   add("controller/limited", [](const ObservedTick& tick) { return tick.controller.record().limited; });
+  if (std::isfinite(controller.options().torque_rate)) {
+    add("controller/rate_limited", [](const ObservedTick& tick) { return tick.controller.record().rate_limited; });
+  }
+  if (controller.options().deadline.isDeclared()) {
+    add("controller/late", [](const ObservedTick& tick) { return tick.controller.record().late; });
+  }
   if (!controller.solution().has_kkt) return;
   add("kkt/stationarity", [](const ObservedTick& tick) { return tick.controller.solution().kkt.stationarity; });
   add("kkt/primal", [](const ObservedTick& tick) { return tick.controller.solution().kkt.primal; });
@@ -84,6 +97,9 @@ void LogColumns::addJoints(const control::Controller& controller) {
     add("qd/" + joints[i], [j](const ObservedTick& tick) { return tick.sensed.qd[j]; });
     add("tau/" + joints[i], [j](const ObservedTick& tick) { return tick.torque[j]; });
   }
+  add("sensing/joints_held", [](const ObservedTick& tick) { return tick.controller.record().sensing.joints_held; });
+  add("sensing/contacts_ignored",
+      [](const ObservedTick& tick) { return tick.controller.record().sensing.contacts_ignored; });
 }
 
 }  // namespace tactus::runtime

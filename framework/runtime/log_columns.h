@@ -19,11 +19,14 @@ enum class ColumnSet {
 ///     time
 ///     level/<priority>/{rank,nullity,active,residual}
 ///     task/<name>/error, task/<name>/<the task's own>
+///     task/<name>/share                                     of tasks that the stack switches on and off
 ///     signal/<name>/<the signal's own>
 ///     contact/{contacts,links,mean_N,max_N,undesired_max_N}
 ///     controller/{torque_norm,scale,status,fallback,limited}
+///     controller/rate_limited, controller/late              when the controller declares a torque rate, a deadline
 ///     kkt/{stationarity,primal,complementarity}            when the back end says them
-///     q/<joint>, qd/<joint>, tau/<joint>                   in the set `all`
+///     q/<joint>, qd/<joint>, tau/<joint>                   in the set `all`, with
+///     sensing/{joints_held,contacts_ignored}
 ///
 /// No column depends on wall-clock time: a log repeats to the byte.
 class LogColumns {

@@ -2,11 +2,22 @@
 
 #include <cmath>
 
+#include "framework/control/element_values.h"
+
 namespace tactus::runtime {
 namespace {
 
 /// The larger one; not-a-number is the worst of all.
 double worse(double a, double b) { return std::isnan(b) || b > a ? b : a; }
+
+void note(std::vector<Fault>& faults, const std::string& name, double time) {
+  for (Fault& known : faults) {
+    if (known.name != name) continue;
+    ++known.ticks;
+    return;
+  }
+  faults.push_back({name, time, 1});
+}
 
 }  // namespace
 
@@ -14,10 +25,17 @@ void RunStatistics::observe(const ObservedTick& tick) {
   const control::TickRecord& record = tick.controller.record();
   const control::TickSolution& solution = tick.controller.solution();
   keepTime(tick.tick_us);
-  if (record.unusable_task) noteUnusable(*record.unusable_task, tick.sensed.time);
+  if (record.unusable_task) note(unusable_, *record.unusable_task, tick.sensed.time);
+  noteSensing(tick);
   fallbacks += record.fallback;
   infeasible += record.status == control::Status::infeasible;
   limited += record.limited;
+  late += record.late;
+  rate_limited += record.rate_limited;
+  partial += record.source == control::TorqueSource::partial;
+  held += record.source == control::TorqueSource::held;
+  gravity += record.source == control::TorqueSource::gravity;
+  blind += record.sensing.blind;
   lost_rank += solution.rank_deficient_levels > 0;
   if (!solution.has_kkt) return;
   has_kkt = true;
@@ -36,13 +54,43 @@ void RunStatistics::keepTime(double tick_us) {
   tick_us_.push_back(tick_us);
 }
 
-void RunStatistics::noteUnusable(const std::string& task, double time) {
-  for (UnusableTask& known : unusable_) {
-    if (known.name != task) continue;
-    ++known.ticks;
-    return;
+void RunStatistics::noteSensing(const ObservedTick& tick) {
+  const control::SensingGuard& sensing = tick.controller.sensing();
+  const dynamics::Model& model = tick.controller.model();
+  if (sensing.record().joints_held > 0) {
+    for (int i = 0; i < model.dof(); ++i)
+      if (sensing.isLost(i)) note(lost_joints_, model.jointNames()[static_cast<size_t>(i)], tick.sensed.time);
   }
-  unusable_.push_back({task, time, 1});
+  for (const int link : sensing.ignoredLinks())
+    note(ignored_contacts_, link < 0 ? "" : model.frames()[static_cast<size_t>(link)].name, tick.sensed.time);
+}
+
+std::vector<std::string> RunStatistics::warnings() const {
+  std::vector<std::string> warnings;
+  const auto first = [](const Fault& fault) {
+    return ", first at t = " + control::formatNumber(fault.first_time) + " s: ";
+  };
+  long named = late + blind;
+  for (const Fault& task : unusable_) {
+    named += task.ticks;
+    warnings.push_back("task '" + task.name + "' gave numbers that are not finite, or too large to work with" +
+                       first(task) + std::to_string(task.ticks) + " ticks fell back");
+  }
+  for (const Fault& joint : lost_joints_) {
+    warnings.push_back("joint '" + joint.name + "' was not sensed" + first(joint) + std::to_string(joint.ticks) +
+                       " ticks took its last good values, or bore the weight alone");
+  }
+  for (const Fault& link : ignored_contacts_) {
+    warnings.push_back((link.name.empty() ? "contacts of no link" : "contacts of link '" + link.name + "'") +
+                       " were no numbers" + first(link) + std::to_string(link.ticks) + " were ignored");
+  }
+  const std::string of_all = " of " + std::to_string(ticks_) + " ticks";
+  if (late > 0) warnings.push_back("the back end missed its deadline in " + std::to_string(late) + of_all);
+  if (const long others = fallbacks - named; others > 0) {
+    warnings.push_back(std::to_string(others) + of_all +
+                       " fell back: their problem was infeasible, or the back end failed");
+  }
+  return warnings;
 }
 
 }  // namespace tactus::runtime

@@ -148,7 +148,8 @@ TEST(CheckCommand, UnknownAttributeWithoutANearNameListsTheOthers) {
   const TemporaryFolder folder;
   const Outcome outcome = tactus({"check", changedStack(folder, "stiffness=", "zzzzzz=")});
   EXPECT_THAT(outcome.err, HasSubstr("<posture> has no attribute 'zzzzzz'; it takes name, class, joints, among, stiffness, "
-                                     "damping, q, on, desired, delay\n"));
+                                     "damping, q, on, desired, delay, active, "
+                                     "active-from, active-until, active-ramp\n"));
 }
 
 }  // namespace

@@ -234,6 +234,28 @@ TEST(RunCommand, ScaledTorquesAreCountedAsLimited) {
   EXPECT_GT(outcome.json()["ticks"]["limited"], 0);
 }
 
+TEST(RunCommand, WhatTheControllerDeclaresIsLogged) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(
+      folder, "<level priority=\"2\"><posture", "<level priority=\"2\"><posture active-from=\"0.2\" active-ramp=\"0.04\"");
+  std::string text = contentOf(stack);
+  const std::string backend = "<controller backend=\"null-space\"";
+  ASSERT_NE(text.find(backend), std::string::npos);
+  text.replace(text.find(backend), backend.size(), backend + " torque-rate=\"0.1\" deadline-iterations=\"50\"");
+  const Outcome outcome = tactus({"run", folder.write("declared.xml", text), "--out", folder.file("run"), "--json"});
+  const CsvTable log = CsvTable::read(folder.file("run/log.csv"));
+  EXPECT_EQ(log.numbers("task/bow/share").at(19), 0);
+  EXPECT_NEAR(log.numbers("task/bow/share").at(22), 0.5, 0.1);
+  EXPECT_EQ(log.numbers("task/bow/share").at(25), 1);
+  EXPECT_EQ(log.numbers("controller/late").back(), 0);
+  EXPECT_GE(log.column("controller/rate_limited"), 0);
+  const nlohmann::json ticks = outcome.json()["ticks"];
+  EXPECT_GT(ticks["rate_limited"], 0);
+  for (const char* count : {"late", "partial", "held", "gravity", "blind"}) EXPECT_EQ(ticks[count], 0) << count;
+  const Outcome said = tactus({"run", folder.file("declared.xml"), "--out", folder.file("run")});
+  EXPECT_THAT(said.out, HasSubstr("ticks kept at the torque rate: "));
+}
+
 TEST(RunCommand, MissingStack) { EXPECT_EQ(tactus({"run", "/nowhere/stack.xml"}).exit_code, 6); }
 
 TEST(RunCommand, BrokenStackLosesNothing) {

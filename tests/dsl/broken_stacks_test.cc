@@ -59,12 +59,19 @@ TEST_P(BrokenStack, IsRefusedAtItsPlace) {
 INSTANTIATE_TEST_SUITE_P(
     All, BrokenStack,
     testing::Values(
+        Expected{"bad_activity.xml", "E014", 14, 36,
+                 "attribute 'active': 'yes' does not name a port: expected signal.port, such as 'touch.held', or 'true' "
+                 "or 'false'"},
         Expected{"bad_choice.xml", "E014", 17, 48,
                  "attribute 'projection': 'augmentd' is not one of the choices: expected 'successive' or "
                  "'augmented'",
                  "augmented"},
+        Expected{"bad_deadline.xml", "E014", 17, 57,
+                 "attribute 'deadline-iterations': '0' is out of range: expected an integer ≥ 1"},
         Expected{"bad_number.xml", "E014", 11, 55,
                  "attribute 'force': '0.5N' is not a number: expected a number ≥ 0 (N)"},
+        Expected{"bad_torque_rate.xml", "E014", 17, 49,
+                 "attribute 'torque-rate': '0' is out of range: expected a number > 0 (1/s)"},
         Expected{"ball_joint.xml", "E054", 3, 3,
                  "joint 'shoulder' has several degrees of freedom: a stack runs robots whose joints are revolute, "
                  "continuous, prismatic or fixed and move on their own",
@@ -79,6 +86,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "", "coupled.urdf"},
         Expected{"duplicate_attribute.xml", "E003", 11, 32, "attribute 'name' is given twice"},
         Expected{"duplicate_name.xml", "E020", 15, 20, "the name 'hand' is taken by the <impedance> in line 14"},
+        Expected{"empty_window.xml", "E014", 13, 55,
+                 "attribute 'active-until': 2 s is not after 2.5 s, where active-from opens the window"},
         Expected{"empty.xml", "E002", 1, 1, "the file holds no element"},
         Expected{"error_in_include.xml", "E030", 3, 49, "the robot has no link or group of links 'fngers'", "fingers",
                  "included.xml"},
@@ -98,6 +107,8 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"missing_plugin.xml", "E070", 3, 17,
                  "the plugin 'no-such-plugin' cannot be loaded: looked for no-such-plugin.so in no folder at all"},
         Expected{"missing_robot.xml", "E016", 2, 1, "<stack> needs a <robot>"},
+        Expected{"negative_ramp.xml", "E014", 15, 67,
+                 "attribute 'active-ramp': '-0.1' is out of range: expected a number ≥ 0 (s)"},
         Expected{"nan_gain.xml", "E014", 15, 50,
                  "attribute 'stiffness': 'nan' is not a finite number: expected a number ≥ 0 (N m/rad)"},
         Expected{"no_mass.xml", "E062", 9, 3,
@@ -128,13 +139,16 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"unknown_option.xml", "E012", 17, 36, "back end 'null-space' has no option 'projecton'", "projection"},
         Expected{"unknown_parameter.xml", "E036", 12, 55, "the stack has no parameter 'pres'", "press"},
         Expected{"unknown_port.xml", "E033", 11, 36,
-                 "signal 'touch' has no port 'hold': its ports are held, undesired, all, missing, points, desired",
+                 "signal 'touch' has no port 'hold': its ports are held, undesired, all, missing, points, desired, "
+                 "touching",
                  "touch.held"},
         Expected{"unknown_signal.xml", "E033", 11, 36, "the stack has no signal 'tuoch'", "touch.held"},
         Expected{"wrong_count.xml", "E014", 14, 52, "attribute 'stiffness': expected 3 numbers, found 2"},
         Expected{"wrong_format.xml", "E019", 2, 16, "format '2' is not one that this version reads: expected '1'"},
         Expected{"wrong_port_type.xml", "E034", 11, 36,
                  "'touch.missing' is a missing-set, but 'on' takes a contact-set"},
+        Expected{"wrong_activity_port.xml", "E034", 13, 31,
+                 "'touch.held' is a contact-set, but 'active' takes a scalar", "touch.touching"},
         Expected{"wrong_root.xml", "E010", 2, 1, "a stack has <stack> outermost, not <stac>", "stack"}),
     [](const auto& info) { return std::filesystem::path(info.param.file).stem().string(); });
 

@@ -121,6 +121,45 @@ TEST(Compile, HandsOnRateGravityLevelsAndNames) {
   EXPECT_LT(controller->tick(sensed).norm(), 1e-12);  // no gravity, no torque
 }
 
+TEST(Compile, TasksAndLevelsComeAndGoAsTheirConditionsSay) {
+  // The probe's value is the time, so its port is on from 0.5 s.
+  auto controller = compile(smallStack(
+      "<signals><test.probe name=\"clock\"/></signals>"
+      "<level priority=\"1\"><test.pull name=\"always\"/><test.pull name=\"never\" active=\"false\"/>"
+      "<test.pull name=\"late\" active=\"clock.value\" active-ramp=\"0\"/></level>"
+      "<level priority=\"2\" active-from=\"0.2\" active-until=\"0.4\"><test.pull name=\"mid\"/></level>",
+      "<controller backend=\"all\" ramp=\"0.05\"/>"));
+  control::Sensed sensed;
+  sensed.q = sensed.qd = Eigen::VectorXd::Zero(7);
+  const auto sharesAfter = [&](int first, int last) {
+    for (int k = first; k <= last; ++k) {
+      sensed.time = 0.001 * k;
+      controller->tick(sensed);
+    }
+    std::vector<double> shares;
+    for (const char* task : {"always", "never", "late"}) shares.push_back(controller->activationOf(task).share());
+    shares.push_back(controller->levels()[1].activation.share());
+    return shares;
+  };
+  EXPECT_THAT(sharesAfter(0, 100), ElementsAre(1, 0, 0, 0));
+  EXPECT_THAT(sharesAfter(101, 300), ElementsAre(1, 0, 0, 1));
+  EXPECT_THAT(sharesAfter(301, 600), ElementsAre(1, 0, 1, 0));
+  controller->setActive("never", true);
+  sharesAfter(601, 610);
+  EXPECT_NEAR(controller->activationOf("never").share(), 10 * 0.001 / 0.05, 1e-9);
+}
+
+TEST(Compile, HandsOnWhatTheControllerDeclares) {
+  const auto given = compile(smallStack(level("<test.pull name=\"p\"/>"),
+                                        "<controller backend=\"all\" torque-rate=\"30\" ramp=\"0.3\" hold=\"0.01\" "
+                                        "deadline-iterations=\"5\" deadline-us=\"250\"/>"))->options();
+  EXPECT_EQ(given.torque_rate, 30);
+  EXPECT_EQ(given.ramp, 0.3);
+  EXPECT_EQ(given.hold, 0.01);
+  EXPECT_EQ(given.deadline.iterations, 5);
+  EXPECT_NEAR(given.deadline.seconds, 250e-6, 1e-18);
+}
+
 TEST(Compile, AllRefusalsAreGathered) {
   EXPECT_EQ(
       errors(smallStack(level("<test.pull name=\"p\" stiffness=\"2000\"/><test.pull name=\"q\" stiffness=\"3000\"/>")))

@@ -346,7 +346,8 @@ TEST(ReadStack, ARunHasATickAndAnEnd) {
 
 TEST(ReadStack, AnUnknownAttributeWithoutANearNameListsTheOthers) {
   EXPECT_THAT(errors(smallStack("<level priority=\"1\" zzzzzz=\"1\"><test.pull name=\"p\"/></level>")),
-              ElementsAre("3:21 E012 <level> has no attribute 'zzzzzz'; it takes priority, weight, strict"));
+              ElementsAre("3:21 E012 <level> has no attribute 'zzzzzz'; it takes priority, weight, strict, active, active-from, "
+                          "active-until, active-ramp"));
   EXPECT_THAT(errors(smallStack("<signals zzzzzz=\"1\"/>" + level)),
               ElementsAre("3:10 E012 <signals> has no attribute 'zzzzzz'; it takes none"));
 }

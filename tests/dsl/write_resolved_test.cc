@@ -65,6 +65,7 @@ void expectSame(const dsl::Stack& a, const dsl::Stack& b) {
     EXPECT_EQ(a.levels[i].weight, b.levels[i].weight);
     EXPECT_EQ(a.levels[i].strict, b.levels[i].strict);
     expectSameInstances(a.levels[i].tasks, b.levels[i].tasks);
+    expectSameValues(a.levels[i].element.values, b.levels[i].element.values);
   }
   expectSameValues(a.controller.values, b.controller.values);
   expectSameValues(a.back_end, b.back_end);
@@ -92,7 +93,8 @@ const std::string rich =
     "<object name=\"bump\" on=\"table\" pose=\"0.04 0.04 -0.015\"><capsule radius=\"${k}\" "
     "length=\"0.2\"/></object></scene>\n"
     "<signals><test.probe name=\"t\"/></signals>\n"
-    "<level priority=\"1\" strict=\"true\"><test.pull name=\"p\" class=\"soft\" joints=\"a1\n  a2\" "
+    "<level priority=\"1\" strict=\"true\" active-from=\"${k}\"><test.pull name=\"p\" active=\"t.value\" active-ramp=\"0\" class=\"soft\" "
+    "joints=\"a1\n  a2\" "
     "from=\"t.value\"/></level>\n"
     "<include file=\"low.xml\"/>\n"
     "<controller backend=\"all\" projection=\"successive\"><alternative backend=\"none\" tolerance=\"${k}\"/>"

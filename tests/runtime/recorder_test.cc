@@ -56,7 +56,8 @@ TEST(Recorder, AllColumnsAddTheJoints) {
   const TemporaryFolder folder;
   record(into(folder, ColumnSet::all), 0.01, true);
   const CsvTable log = CsvTable::read(folder.file("log.csv"));
-  for (const char* column : {"q/hinge", "qd/hinge", "tau/hinge", "kkt/stationarity", "kkt/primal"}) {
+  for (const char* column : {"q/hinge", "qd/hinge", "tau/hinge", "kkt/stationarity", "kkt/primal",
+                             "sensing/joints_held", "sensing/contacts_ignored"}) {
     EXPECT_GE(log.column(column), 0) << column;
   }
 }

@@ -1,5 +1,6 @@
 #include "framework/runtime/run_statistics.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "framework/runtime/loop.h"
@@ -74,6 +75,44 @@ TEST(RunStatistics, NamesTheTaskWhoseNumbersFail) {
   EXPECT_EQ(statistics.unusableTasks()[0].name, "lift");
   EXPECT_EQ(statistics.unusableTasks()[0].first_time, 0);
   EXPECT_EQ(statistics.unusableTasks()[0].ticks, 3);
+}
+
+TEST(RunStatistics, NamesWhatWasNotSensed) {
+  SameTick tick(0.5);
+  RunStatistics statistics(30);
+  tick.sensed.q[0] = std::nan("");
+  tick.sensed.time = 0.25;
+  control::ContactRecord contact;
+  contact.link = 1;
+  contact.force_N = INFINITY;
+  tick.sensed.contacts = {contact, contact};
+  for (int i = 0; i < 30; ++i) {
+    tick.controller->tick(tick.sensed);
+    statistics.observe(tick.with(1));
+  }
+  ASSERT_EQ(statistics.lostJoints().size(), 1u);
+  EXPECT_EQ(statistics.lostJoints()[0].name, "hinge");
+  EXPECT_EQ(statistics.lostJoints()[0].first_time, 0.25);
+  EXPECT_EQ(statistics.blind, 10) << "held for 20 ms";
+  EXPECT_EQ(statistics.gravity, 10);
+  EXPECT_EQ(statistics.fallbacks, 10);
+  EXPECT_THAT(statistics.warnings(),
+              ::testing::ElementsAre(
+                  "joint 'hinge' was not sensed, first at t = 0.25 s: 30 ticks took its last good values, or bore the "
+                  "weight alone",
+                  "contacts of link 'bob' were no numbers, first at t = 0.25 s: 60 were ignored"));
+}
+
+TEST(RunStatistics, CountsWhoseTorqueWasApplied) {
+  PendulumPlant plant;
+  RunStatistics statistics(100);
+  const std::atomic<bool> stop{false};
+  runLoop(plant, *pendulumController(0.5, true, 90), 0.1, {&statistics}, stop);
+  EXPECT_EQ(statistics.partial, 10) << "that back end fails, but leaves a torque";
+  EXPECT_EQ(statistics.held + statistics.gravity + statistics.late + statistics.rate_limited, 0);
+  EXPECT_THAT(statistics.warnings(),
+              ::testing::ElementsAre(
+                  "10 of 100 ticks fell back: their problem was infeasible, or the back end failed"));
 }
 
 }  // namespace

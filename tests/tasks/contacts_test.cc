@@ -78,6 +78,30 @@ TEST_F(ContactsSignal, AChangeMustLastToCount) {
   EXPECT_EQ(port<ContactSet>(world, "held").contacts.size(), 0u);
 }
 
+TEST_F(ContactsSignal, AContactThatFlickersEveryTickStaysAsItIs) {
+  makeTouch({{"desired", "fingers"}});
+  const control::ContactRecord touch = world.contactOn("ring_medial", kDown, 1);
+  const auto flicker = [&](int ticks_on, int ticks_off, int ticks) {
+    int switches = 0;
+    for (int k = 0; k < ticks; ++k) {
+      const std::size_t before = port<ContactSet>(world, "held").contacts.size();
+      world.sensed.contacts.clear();
+      if (k % (ticks_on + ticks_off) < ticks_on) world.sensed.contacts.push_back(touch);
+      step();
+      switches += port<ContactSet>(world, "held").contacts.size() != before;
+    }
+    return switches;
+  };
+  EXPECT_EQ(flicker(1, 1, 1000), 0);
+  EXPECT_EQ(flicker(10, 0, 10), 1) << "a touch that lasts counts";
+  EXPECT_EQ(port<double>(world, "touching"), 1);
+  EXPECT_EQ(flicker(1, 1, 1000), 0);
+  EXPECT_EQ(flicker(1, 4, 1000), 0);
+  // However it flickers, a link comes or goes at most once in `hold`, 5 ms.
+  for (int on = 1; on < 12; ++on)
+    for (int off = 1; off < 12; ++off) EXPECT_LE(flicker(on, off, 1000), 1000 / 5) << on << " " << off;
+}
+
 TEST_F(ContactsSignal, LinksWithoutSkinFeelNothing) {
   world.sensed.contacts = {world.contactOn("lwr_2", kDown, 5)};
   world.feel();

@@ -1,0 +1,77 @@
+#include "framework/control/sensing_guard.h"
+
+#include <cmath>
+
+namespace tactus::control {
+namespace {
+
+constexpr double largest = 1e6;                                    // rad, m, N and per second
+constexpr double rounding = 1e-9;                                  // s, of sums of periods
+
+bool isNumber(double value) { return std::abs(value) <= largest; }  // false for NaN
+bool areNumbers(const Eigen::Vector3d& v) { return isNumber(v.x()) && isNumber(v.y()) && isNumber(v.z()); }
+
+}  // namespace
+
+SensingGuard::SensingGuard(int dof, int links, double hold, double period)
+    : links_(links), hold_(hold), period_(period), lost_(static_cast<std::size_t>(dof)), never_sensed_(dof) {
+  known_.q.setZero(dof);
+  known_.qd.setZero(dof);
+  known_.contacts.reserve(contact_capacity);
+  ignored_links_.reserve(contact_capacity);
+}
+
+const Sensed& SensingGuard::check(const Sensed& raw) {
+  record_ = SensingRecord{};
+  const bool time_is_good = std::isfinite(raw.time) && (!has_time_ || raw.time >= known_.time);
+  known_.time = time_is_good ? raw.time : known_.time + (has_time_ ? period_ : 0);
+  has_time_ = true;
+  const bool joints_are_good = checkJoints(raw);
+  const bool contacts_are_good = checkContacts(raw);
+  if (time_is_good && joints_are_good && contacts_are_good) return raw;
+  if (contacts_are_good) known_.contacts.assign(raw.contacts.begin(), raw.contacts.end());
+  if (record_.blind) known_.qd.setZero();
+  return known_;
+}
+
+bool SensingGuard::checkJoints(const Sensed& raw) {
+  const Eigen::Index dof = known_.q.size();
+  const bool sized = raw.q.size() == dof && raw.qd.size() == dof;
+  for (Eigen::Index i = 0; i < dof; ++i) {
+    Joint& joint = lost_[static_cast<std::size_t>(i)];
+    joint.now = !sized || !isNumber(raw.q[i]) || !isNumber(raw.qd[i]);
+    if (!joint.now) {
+      known_.q[i] = raw.q[i];
+      known_.qd[i] = raw.qd[i];
+      if (!joint.ever_good) --never_sensed_;
+      joint.ever_good = true;
+      joint.lost_for = 0;
+      continue;
+    }
+    joint.lost_for += period_;
+    ++record_.joints_held;
+    if (!joint.ever_good || joint.lost_for > hold_ + rounding) record_.blind = true;
+  }
+  return record_.joints_held == 0;
+}
+
+bool SensingGuard::isUsable(const ContactRecord& contact) const {
+  return contact.link >= 0 && contact.link < links_ && areNumbers(contact.point_W) && areNumbers(contact.normal_W) &&
+         isNumber(contact.force_N) && isNumber(contact.depth) && areNumbers(contact.friction_W);
+}
+
+bool SensingGuard::checkContacts(const Sensed& raw) {
+  ignored_links_.clear();
+  for (const ContactRecord& contact : raw.contacts) {
+    if (isUsable(contact)) continue;
+    ignored_links_.push_back(contact.link >= 0 && contact.link < links_ ? contact.link : -1);
+  }
+  record_.contacts_ignored = static_cast<int>(ignored_links_.size());
+  if (record_.contacts_ignored == 0) return true;
+  known_.contacts.clear();
+  for (const ContactRecord& contact : raw.contacts)
+    if (isUsable(contact)) known_.contacts.push_back(contact);
+  return false;
+}
+
+}  // namespace tactus::control
