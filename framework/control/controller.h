@@ -62,6 +62,7 @@ class Controller {
   const TickSolution& solution() const { return solution_; }
   const TickRecord& record() const { return record_; }
   BackEnd& backEnd() { return *back_end_; }
+  const BackEnd& backEnd() const { return *back_end_; }
   const std::vector<NamedSignal>& signals() const { return signals_; }
   const std::vector<Level>& levels() const { return levels_; }
 
