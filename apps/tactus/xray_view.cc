@@ -147,6 +147,8 @@ ordered_json xrayToJson(const XrayedTick& tick, const Session& session) {
   ordered_json json{{"time", tick.time}};
   if (!tick.why.empty()) json["why"] = tick.why;
   json["backend"] = session.backEndName();
+  json["options"] = ordered_json::object();
+  for (const auto& [name, value] : session.stack().back_end.all()) json["options"][name] = value.text;
   json["status"] = dsl::statusName(tick.solution.status);
   if (!tick.solution.message.empty()) json["message"] = tick.solution.message;
   json["rank_tolerance"] = options.rank.rank_tolerance;
@@ -208,6 +210,9 @@ std::vector<std::string> xraySentences(const JsonPlace& xray) {
                         " torque limit, " + rounded(number(limit.at("limit_Nm"))) + " N m after gravity and motion");
   if (number(xray.at("scale")) < 1)
     sentences.push_back("the torque was scaled by " + rounded(number(xray.at("scale"))) + " into its limits");
+  std::vector<std::string> options;
+  for (const auto& [name, value] : xray.at("options").members()) options.push_back(name + " " + value.text());
+  sentences.push_back("options of " + xray.at("backend").text() + ": " + joined(options));
   return sentences;
 }
 

@@ -19,7 +19,7 @@ struct XrayedTick {
   control::TickSolution solution;
 };
 
-/// {time, why?, backend, status, message?, rank_tolerance, fade, scale, joints: [names],
+/// {time, why?, backend, options: {name: text}, status, message?, rank_tolerance, fade, scale, joints: [names],
 ///  levels: [{priority, wanted, granted, freedom_left}],
 ///  tasks: [{level, name, place, rows, wanted, granted, lost: [{share, rows, joints: {name: part}, takers: [{task,
 ///           share}]}], faded: [{sigma, weight}], active: [rows], asked, residual, torque, torque_left?}],

@@ -202,8 +202,8 @@ class Sentence {
     const std::string amount = numberText(relaxation.amount);
     switch (relaxation.group.kind) {
       case Kind::torque_limit:
-        return "allow joint " + joint(relaxation.group.joint) + " " + amount + " N m more " +
-               (relaxation.upper ? "upwards" : "downwards");
+        return "allow joint " + joint(relaxation.group.joint) + " " + amount + " N m beyond its " +
+               (relaxation.upper ? "upper" : "lower") + " limit";
       case Kind::forces: return "allow the force of " + nameOf(relaxation.group) + " " + amount + " N more";
       case Kind::rows:
         return "let " + nameOf(relaxation.group) + " be accelerated by " + amount +

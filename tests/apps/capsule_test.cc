@@ -140,6 +140,32 @@ TEST(Capsule, OfARealStackBeyondItsActuators) {
   EXPECT_TRUE(capsulesIn(folder.file("run")).empty());
 }
 
+TEST(Capsule, OfARealStackThatHasNoSolutionNamesItsTask) {
+  // The finger's motors are too weak to hold it, and its hip falls onto its stop: the row of <joint-limits> forbids that.
+  const TemporaryFolder folder;
+  const std::string stack =
+      changedStack(folder, "<level priority=\"1\">", "<level priority=\"1\"><joint-limits name=\"limits\"/>");
+  std::string robot = contentOf(data("finger.urdf"));
+  for (size_t at; (at = robot.find("effort=\"20\"")) != std::string::npos;) robot.replace(at, 11, "effort=\"0.01\"");
+  robot.replace(robot.find("upper=\"1.5\""), 11, "upper=\"0.25\"");
+  folder.write("finger.urdf", robot);
+  const Outcome run =
+      tactus({"run", stack, "--backend", "qp/nlopt", "--duration", "0.01", "--out", folder.file("run")});
+  const std::string why = "task 'limits' (" + stack + ":12:23) and the torque limits of joints hip, knee and tip "
+                          "contradict each other; any one of these would do: let 'limits' be accelerated by ";
+  EXPECT_THAT(run.err, HasSubstr("warning: first infeasible at t = 0.001 s: " + why));
+  const Outcome outcome = tactus({"solve", folder.file("run/capsule-1.json"), "--json"});
+  EXPECT_EQ(outcome.exit_code, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("qp: reproduced to the bit\n"));
+  EXPECT_THAT(outcome.err, HasSubstr(why));
+  const nlohmann::json conflict = outcome.json()["conflict"];
+  EXPECT_EQ(conflict["groups"].size(), 4u);
+  EXPECT_EQ(conflict["groups"][0]["place"], stack + ":12:23");
+  EXPECT_EQ(conflict["relaxations"][1]["joint"], "hip");
+  EXPECT_EQ(conflict["relaxations"][1]["upper"], false);
+  EXPECT_GT(conflict["relaxations"][1]["amount"].get<double>(), 0.1);
+}
+
 TEST(Capsule, OfATaskWithoutNumbers) {
   const TemporaryFolder folder;
   const std::string stack = changedStack(folder, "<level priority=\"2\">",

@@ -59,7 +59,7 @@ TEST(SolveCommand, InfeasibleSaysWhoContradictsWhomAndWhatWouldDo) {
   // τ₁ ≥ 1, but the wall may neither be pressed nor approached.
   const std::string sentence =
       "task 'wall' and the torque limit of joint 1 contradict each other; any one of these would do: let 'wall' be "
-      "accelerated by 1 m/s², allow the force of 'wall' 1 N more, or allow joint 1 1 N m more downwards";
+      "accelerated by 1 m/s², allow the force of 'wall' 1 N more, or allow joint 1 1 N m beyond its lower limit";
   EXPECT_THAT(outcome.err, HasSubstr("tactus solve: " + sentence + "\n"));
   const nlohmann::json conflict = outcome.json()["conflict"];
   EXPECT_EQ(conflict["sentence"], sentence);

@@ -68,10 +68,10 @@ TEST(Conflict, AnInequalityRowAgainstALimitThatLeavesOutZero) {
   names.places = {{"stop", "stack.xml:12:5"}};
   EXPECT_EQ(describe(conflict, problem, names),
             "task 'stop' (stack.xml:12:5) and the torque limit of joint a1 contradict each other; any one of these "
-            "would do: let 'stop' be accelerated by 4 m/s² or rad/s², or allow joint a1 2 N m more downwards");
+            "would do: let 'stop' be accelerated by 4 m/s² or rad/s², or allow joint a1 2 N m beyond its lower limit");
   EXPECT_EQ(describe(conflict, problem),
             "task 'stop' and the torque limit of joint 1 contradict each other; any one of these would do: let 'stop' "
-            "be accelerated by 4 m/s² or rad/s², or allow joint 1 2 N m more downwards");
+            "be accelerated by 4 m/s² or rad/s², or allow joint 1 2 N m beyond its lower limit");
 }
 
 TEST(Conflict, AContactMustPressMoreThanItMay) {
@@ -91,7 +91,7 @@ TEST(Conflict, AContactMustPressMoreThanItMay) {
   }
   EXPECT_EQ(describe(conflict, problem),
             "task 'hold' and the torque limit of joint 1 contradict each other; any one of these would do: let 'hold' "
-            "be accelerated by 2 m/s², allow the force of 'hold' 2 N more, or allow joint 1 2 N m more downwards");
+            "be accelerated by 2 m/s², allow the force of 'hold' 2 N more, or allow joint 1 2 N m beyond its lower limit");
 }
 
 TEST(Conflict, AContactThatWouldHaveToPull) {
