@@ -175,8 +175,6 @@ int explain(const ExplainArguments& arguments, bool json) {
     tick.stack.file = arguments.type;
     return explainTick(tick, json);
   }
-  if (std::filesystem::exists(arguments.type))
-    throw UsageError("'" + arguments.type + "' is a file: --at SECONDS says which tick of it is explained");
   Program program(arguments.plugins);
   for (const std::string& refusal : program.loadFolders()) std::cerr << "refused: " << refusal << "\n";
   const control::ElementTable& table = program.registry().elements();
@@ -192,6 +190,8 @@ int explain(const ExplainArguments& arguments, bool json) {
     out += (out.empty() ? "" : "\n") + text(row);
   }
   if (found.empty()) {
+    if (std::filesystem::exists(arguments.type))
+      throw UsageError("'" + arguments.type + "' is a file: --at SECONDS says which tick of it is explained");
     const std::string nearest = dsl::nearestName(arguments.type, names);
     const std::string hint = nearest.empty() ? "'tactus explain' lists what there is" : "did you mean '" + nearest + "'?";
     throw UsageError("nothing is called '" + arguments.type + "'; " + hint);

@@ -191,6 +191,7 @@ std::vector<std::vector<std::string>> xrayRows(const JsonPlace& xray) {
 std::vector<std::string> xraySentences(const JsonPlace& xray) {
   std::vector<std::string> sentences;
   if (xray.at("message").exists()) sentences.push_back(xray.at("status").text() + ": " + xray.at("message").text());
+  if (xray.at("levels").items().empty()) sentences.push_back("the tick holds numbers that cannot be worked with");
   for (const JsonPlace& task : xray.at("tasks").items()) {
     addLost(task, sentences);
     for (const JsonPlace& faded : task.at("faded").items())
