@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
+#include <limits>
 #include <set>
 #include <vector>
 
-#include "dsl/nearest_name.h"
+#include "dsl/capsule.h"
+#include "dsl/tick_json.h"
 #include "framework/runtime/file_error.h"
 
 namespace tactus::dsl {
@@ -17,130 +18,16 @@ namespace {
 using control::TickLevel;
 using control::TickProblem;
 using control::TickTask;
-using Json = nlohmann::ordered_json;
 
 constexpr const char* file_format = "tactus-tick/1";
 constexpr double symmetry_tolerance = 1e-9;                        // relative to the largest entry
 constexpr int friction_rows = 3;
 
-std::string count(std::size_t n, const std::string& noun) {
-  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
-}
-
-/// A value of the document with the path that leads to it.
-class Node {
- public:
-  Node(const Json& json, std::string path) : json_(json), path_(std::move(path)) {}
-
-  [[noreturn]] void fail(const std::string& reason) const { throw TickFileError(path_, reason); }
-
-  /// Checks that this is an object with the required keys and no others than the allowed ones.
-  void expectObject(const std::vector<std::string>& required, const std::vector<std::string>& optional) const {
-    if (!json_.is_object()) fail("expected an object");
-    std::vector<std::string> valid = required;
-    valid.insert(valid.end(), optional.begin(), optional.end());
-    for (const auto& [key, value] : json_.items()) {
-      if (std::find(valid.begin(), valid.end(), key) != valid.end()) continue;
-      const std::string near = nearestName(key, valid);
-      fail("unknown key \"" + key + "\"" + (near.empty() ? "" : ", did you mean \"" + near + "\"?"));
-    }
-    for (const std::string& key : required)
-      if (!json_.contains(key)) fail("\"" + key + "\" is missing");
-  }
-
-  bool has(const char* key) const { return json_.contains(key); }
-  Node at(const char* key) const { return {json_.at(key), path_.empty() ? key : path_ + "." + key}; }
-  std::size_t size() const {
-    if (!json_.is_array()) fail("expected an array");
-    return json_.size();
-  }
-  Node at(std::size_t index) const { return {json_.at(index), path_ + "[" + std::to_string(index) + "]"}; }
-
-  std::string text() const {
-    if (!json_.is_string()) fail("expected a text");
-    return json_.get<std::string>();
-  }
-  bool flag() const {
-    if (!json_.is_boolean()) fail("expected true or false");
-    return json_.get<bool>();
-  }
-  double number() const {
-    if (!json_.is_number()) fail("expected a number");
-    const double value = json_.get<double>();
-    if (!std::isfinite(value)) fail("expected a finite number");
-    return value;
-  }
-  int integer(int least) const {
-    const double value = number();
-    if (value != std::floor(value) || value < least || value > 1e6)
-      fail("expected an integer from " + std::to_string(least));
-    return static_cast<int>(value);
-  }
-  Eigen::VectorXd vector(int size) const {
-    expectCount(size);
-    Eigen::VectorXd values(size);
-    for (int i = 0; i < size; ++i) values[i] = at(static_cast<std::size_t>(i)).number();
-    return values;
-  }
-  /// null stands for `infinity`.
-  Eigen::VectorXd limits(int size, double infinity) const {
-    expectCount(size);
-    Eigen::VectorXd values(size);
-    for (int i = 0; i < size; ++i) {
-      const Node entry = at(static_cast<std::size_t>(i));
-      values[i] = entry.json_.is_null() ? infinity : entry.number();
-    }
-    return values;
-  }
-  Eigen::MatrixXd rows(int columns) const {
-    Eigen::MatrixXd matrix(size(), columns);
-    for (std::size_t r = 0; r < size(); ++r) {
-      const Node row = at(r);
-      if (row.size() != static_cast<std::size_t>(columns))
-        fail("row " + std::to_string(r + 1) + " has " + count(row.size(), "number") + ", expected " +
-             std::to_string(columns));
-      matrix.row(r) = row.vector(columns).transpose();
-    }
-    return matrix;
-  }
-
- private:
-  void expectCount(int expected) const {
-    if (size() != static_cast<std::size_t>(expected))
-      fail("has " + count(size(), "number") + ", expected " + std::to_string(expected));
-  }
-
-  const Json& json_;
-  std::string path_;
-};
-
-Json parse(const std::string& text) {
-  // nlohmann keeps the last of repeated keys in silence.
-  std::vector<std::set<std::string>> keys;
-  std::string repeated;
-  const auto watch = [&](int, Json::parse_event_t event, Json& value) {
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys.pop_back();
-    if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
-      repeated = value.get<std::string>();
-    return true;
-  };
-  Json json;
-  try {
-    json = Json::parse(text, watch);
-  } catch (const nlohmann::json::exception& error) {
-    const std::string what = error.what();                         // "[json.exception.…] parse error at line 1, …"
-    const std::size_t end = what.find("] ");
-    throw TickFileError("", "not JSON: " + (end == std::string::npos ? what : what.substr(end + 2)));
-  }
-  if (!repeated.empty()) throw TickFileError("", "key \"" + repeated + "\" is repeated in one object");
-  return json;
-}
-
-Eigen::MatrixXd readMassMatrix(const Node& node, int dof) {
+Eigen::MatrixXd readMassMatrix(const JsonNode& node, int dof, bool checked) {
   if (node.size() != static_cast<std::size_t>(dof))
-    node.fail("has " + count(node.size(), "row") + ", expected " + std::to_string(dof));
+    node.fail("has " + countOf(node.size(), "row") + ", expected " + std::to_string(dof));
   const Eigen::MatrixXd M = node.rows(dof);
+  if (!checked) return M;
   const double largest = M.cwiseAbs().maxCoeff();
   for (int i = 0; i < dof; ++i)
     for (int j = 0; j < i; ++j)
@@ -150,7 +37,7 @@ Eigen::MatrixXd readMassMatrix(const Node& node, int dof) {
   return M;
 }
 
-control::TorqueLimits readLimits(const Node& node, int dof) {
+control::TorqueLimits readLimits(const JsonNode& node, int dof) {
   node.expectObject({"lower", "upper"}, {"priority"});
   control::TorqueLimits limits;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -162,7 +49,7 @@ control::TorqueLimits readLimits(const Node& node, int dof) {
   return limits;
 }
 
-TickTask readTask(const Node& node, int dof) {
+TickTask readTask(const JsonNode& node, int dof) {
   node.expectObject({"name", "relation", "jacobian", "force"}, {"acceleration", "contact", "force_max", "friction"});
   const Eigen::MatrixXd jacobian = node.at("jacobian").rows(dof);
   const int rows = static_cast<int>(jacobian.rows());
@@ -187,14 +74,14 @@ TickTask readTask(const Node& node, int dof) {
     task.friction = node.at("friction").number();
     if (*task.friction < 0) node.at("friction").fail("must not be negative");
     if (rows % friction_rows != 0)
-      node.at("friction").fail("needs rows in threes (normal and two tangents), the task has " + count(rows, "row"));
+      node.at("friction").fail("needs rows in threes (normal and two tangents), the task has " + countOf(rows, "row"));
   }
   for (const char* key : {"force_max", "friction"})
     if (node.has(key) && !task.contact) node.at(key).fail("needs \"contact\": true");
   return task;
 }
 
-TickLevel readLevel(const Node& node, int dof) {
+TickLevel readLevel(const JsonNode& node, int dof) {
   node.expectObject({"priority", "tasks"}, {"weight"});
   TickLevel level;
   level.priority = node.at("priority").integer(1);
@@ -202,7 +89,7 @@ TickLevel readLevel(const Node& node, int dof) {
     level.weight = node.at("weight").number();
     if (*level.weight <= 0) node.at("weight").fail("must be above 0");
   }
-  const Node tasks = node.at("tasks");
+  const JsonNode tasks = node.at("tasks");
   for (std::size_t t = 0; t < tasks.size(); ++t) level.tasks.push_back(readTask(tasks.at(t), dof));
   return level;
 }
@@ -214,13 +101,18 @@ Json numbers(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return array;
 }
 
-Json matrix(const Eigen::MatrixXd& values) {
+Json exactMatrix(const Eigen::MatrixXd& values) {
   Json rows = Json::array();
-  for (int r = 0; r < values.rows(); ++r) rows.push_back(numbers(values.row(r).transpose()));
+  for (int r = 0; r < values.rows(); ++r) rows.push_back(exactNumbers(values.row(r).transpose()));
   return rows;
 }
 
-const char* name(control::Status status) {
+}  // namespace
+
+TickFileError::TickFileError(std::string path, const std::string& reason)
+    : std::runtime_error(path.empty() ? reason : path + ": " + reason), json_path(std::move(path)) {}
+
+const char* statusName(control::Status status) {
   switch (status) {
     case control::Status::ok: return "ok";
     case control::Status::infeasible: return "infeasible";
@@ -229,24 +121,30 @@ const char* name(control::Status status) {
   return "failed";
 }
 
-}  // namespace
-
-TickFileError::TickFileError(std::string path, const std::string& reason)
-    : std::runtime_error(path.empty() ? reason : path + ": " + reason), json_path(std::move(path)) {}
+Json exactNumbers(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  Json array = Json::array();
+  for (const double value : values) {
+    if (std::isfinite(value))
+      array.push_back(value);
+    else
+      array.push_back(std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
+  }
+  return array;
+}
 
 TickProblem readTickProblem(const std::string& file) { return parseTickProblem(runtime::readFile(file)); }
 
-TickProblem parseTickProblem(const std::string& text) {
-  const Json json = parse(text);
-  const Node root(json, "");
-  root.expectObject({"format", "dof", "mass_matrix", "levels"}, {"torque_limits"});
+TickProblem parseTickProblem(const std::string& text) { return parseTickFile(text).problem; }
+
+TickProblem problemFromJson(const JsonNode& root, bool checked) {
+  root.expectObject({"format", "dof", "mass_matrix", "levels"}, {"torque_limits", "capsule"});
   if (root.at("format").text() != file_format)
     root.at("format").fail("\"" + root.at("format").text() + "\" is not \"" + file_format + "\"");
   TickProblem problem;
   problem.dof = root.at("dof").integer(1);
-  problem.mass_matrix = readMassMatrix(root.at("mass_matrix"), problem.dof);
+  problem.mass_matrix = readMassMatrix(root.at("mass_matrix"), problem.dof, checked);
   if (root.has("torque_limits")) problem.torque_limits = readLimits(root.at("torque_limits"), problem.dof);
-  const Node levels = root.at("levels");
+  const JsonNode levels = root.at("levels");
   std::set<int> priorities;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     problem.levels.push_back(readLevel(levels.at(i), problem.dof));
@@ -259,11 +157,11 @@ TickProblem parseTickProblem(const std::string& text) {
   return problem;
 }
 
-std::string tickProblemToJson(const TickProblem& problem) {
+Json problemToJson(const TickProblem& problem) {
   Json json;
   json["format"] = file_format;
   json["dof"] = problem.dof;
-  json["mass_matrix"] = matrix(problem.mass_matrix);
+  json["mass_matrix"] = exactMatrix(problem.mass_matrix);
   if (problem.torque_limits) {
     Json& limits = json["torque_limits"];
     limits["lower"] = numbers(problem.torque_limits->lower);
@@ -280,9 +178,9 @@ std::string tickProblemToJson(const TickProblem& problem) {
       Json task_json;
       task_json["name"] = task.name;
       task_json["relation"] = task.relation == control::Relation::equality ? "equality" : "inequality";
-      task_json["jacobian"] = matrix(task.J());
-      task_json["force"] = numbers(task.F());
-      if (task.has_acceleration) task_json["acceleration"] = numbers(task.acceleration.head(task.rows));
+      task_json["jacobian"] = exactMatrix(task.J());
+      task_json["force"] = exactNumbers(task.F());
+      if (task.has_acceleration) task_json["acceleration"] = exactNumbers(task.acceleration.head(task.rows));
       if (task.contact) task_json["contact"] = true;
       if (std::isfinite(task.force_max)) task_json["force_max"] = task.force_max;
       if (task.friction) task_json["friction"] = *task.friction;
@@ -290,14 +188,16 @@ std::string tickProblemToJson(const TickProblem& problem) {
     }
     json["levels"].push_back(std::move(level_json));
   }
-  return json.dump() + "\n";
+  return json;
 }
+
+std::string tickProblemToJson(const TickProblem& problem) { return problemToJson(problem).dump() + "\n"; }
 
 std::string solutionToJson(const TickProblem& problem, const control::TickSolution& solution,
                            const std::string& back_end, double solve_us) {
   Json json;
   json["backend"] = back_end;
-  json["status"] = name(solution.status);
+  json["status"] = statusName(solution.status);
   if (!solution.message.empty()) json["message"] = solution.message;
   json["torque"] = numbers(solution.torque);
   if (solution.n_contact_forces > 0)

@@ -12,7 +12,8 @@
 ///    levels: [{priority, weight?, tasks: [{name, relation: "equality" | "inequality", jacobian: [[…]], force: […],
 ///              acceleration?, contact?, force_max?, friction?}]}]}
 ///
-/// A limit that is null is infinite.  Numbers keep every bit through a file.
+/// A limit that is null is infinite.  Numbers keep every bit through a file.  A capsule (dsl/capsule.h) is such a file
+/// with one more key, and reads as one.
 namespace tactus::dsl {
 
 /// What is wrong with a tick problem file; the message starts with the JSON path, e.g.
@@ -30,6 +31,9 @@ control::TickProblem readTickProblem(const std::string& file);
 control::TickProblem parseTickProblem(const std::string& text);
 
 std::string tickProblemToJson(const control::TickProblem& problem);
+
+/// "ok", "infeasible", "failed"
+const char* statusName(control::Status status);
 
 /// {backend, status, message?, torque, contact_forces?, scale, levels: [{priority, rank, nullity, residual,
 /// active: [{task, row}]}], kkt?: {stationarity, primal, complementarity}, iterations, solve_us}

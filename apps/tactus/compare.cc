@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "apps/tactus/differences.h"
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/progress.h"
 #include "apps/tactus/same_states.h"
@@ -90,12 +92,19 @@ ordered_json closedLoop(Session& session, const std::string& label, const std::v
 }
 
 ordered_json sameStates(const std::vector<control::TickProblem>& problems, const Answers& reference,
-                        const Answers& answers) {
+                        const Answers& answers, const std::vector<TickDifference>& differences) {
   const TorqueDifference difference = compareTorques(problems, reference, answers);
+  const auto count = [&](auto differs) {
+    return std::count_if(differences.begin(), differences.end(), [&](const TickDifference& tick) {
+      return differs(tick.here) || differs(tick.there);
+    });
+  };
   return {{"torque_difference", {{"mean", difference.mean}, {"max", difference.max}}},
           {"torque_difference_relative", {{"mean", difference.relative_mean}, {"max", difference.relative_max}}},
           {"compared", difference.compared},
           {"unsolved", answers.unsolved},
+          {"other_active_rows", count([](const BoundsOf& bounds) { return !bounds.rows.empty(); })},
+          {"other_limits", count([](const BoundsOf& bounds) { return !bounds.joints.empty(); })},
           {"violation_max", answers.violation_max},
           {"kkt_max", kktToJson(answers.has_kkt, answers.kkt_max)},
           {"solve_us", timesToJson(answers.solve_us)}};
@@ -141,6 +150,8 @@ std::string comparisonTable(const ordered_json& comparison) {
   table.row("constraint violation, max (relative)", "/same_states/violation_max");
   table.row("KKT stationarity, max", "/same_states/kkt_max/stationarity");
   table.row("not solved", "/same_states/unsolved");
+  table.row("other active rows, ticks", "/same_states/other_active_rows");
+  table.row("other joints at torque limits, ticks", "/same_states/other_limits");
   table.row("solve, median (µs)", "/same_states/solve_us/median");
   table.row("solve, p99 (µs)", "/same_states/solve_us/p99");
   table.heading("closed loop");
@@ -188,19 +199,25 @@ int compare(const CompareArguments& arguments, bool json) {
     }
   }
   Answers reference;
+  std::string why;
   for (size_t i = 0; i < labels.size(); ++i) {
     // A fresh controller, so that no back end starts warm from its own run.
     const auto controller = dsl::compile(readFor(labels[i]), program.registry());
     const Answers answers = solveAll(controller->backEnd(), sampler.problems());
     if (i == 0) reference = answers;
-    back_ends[i]["same_states"] = sameStates(sampler.problems(), reference, answers);
+    const std::vector<TickDifference> apart = differences(sampler, reference, answers);
+    const std::vector<std::string>& joints = controller->model().jointNames();
+    back_ends[i]["same_states"] = sameStates(sampler.problems(), reference, answers, apart);
+    back_ends[i]["same_states"]["ticks"] = toJson(apart, sampler, answers, joints);
+    const std::string lines = largestDifferences(apart, sampler, joints, labels.front());
+    if (!lines.empty()) why += "where " + labels[i] + " is furthest from " + labels.front() + "\n" + lines;
   }
   const ordered_json comparison{{"stack", name},
                                 {"seed", seed},
                                 {"reference", labels.front()},
                                 {"sampled_ticks", sampler.problems().size()},
                                 {"backends", back_ends}};
-  std::cout << (json ? comparison.dump(2) + "\n" : comparisonTable(comparison));
+  std::cout << (json ? comparison.dump(2) + "\n" : comparisonTable(comparison) + why);
   return code;
 }
 

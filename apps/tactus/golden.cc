@@ -10,6 +10,7 @@
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/temporary_folder.h"
 #include "apps/tactus/text.h"
 #include "apps/tactus/tolerances.h"
 #include "apps/tactus/versions.h"
@@ -26,22 +27,6 @@ struct GoldenArguments : StackArguments {
   std::vector<std::string> cases;
   std::string reason;
   std::string keep;
-};
-
-/// A new folder whose name begins with `stem`, taken away at the end.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(const fs::path& stem = fs::temp_directory_path() / "tactus-golden-")
-      : path(stem.string() + "XXXXXX") {
-    if (!::mkdtemp(path.data())) throw runtime::FileError(path, "cannot be created", errno);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string path;
 };
 
 /// Puts the new folder in the place of the case in one step.  What stood there is left in the new folder's place.

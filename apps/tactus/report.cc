@@ -11,6 +11,7 @@
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/targets.h"
 #include "apps/tactus/text.h"
+#include "apps/tactus/xray_view.h"
 #include "framework/runtime/csv_table.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/percentile.h"
@@ -33,7 +34,11 @@ struct RunData {
   CsvTable log;
   CsvTable touched;
 
+  std::string xray_path;
+  ordered_json xray;                                               ///< null where there is none
+
   JsonPlace run() const { return {file, json}; }
+  JsonPlace xrays() const { return {xray_path, xray}; }
 };
 
 RunData readRunFolder(const std::string& folder) {
@@ -50,6 +55,8 @@ RunData readRunFolder(const std::string& folder) {
   };
   data.log = read("log.csv");
   data.touched = read("touched_points.csv");
+  data.xray_path = folder + "/" + xray_file;
+  if (std::filesystem::exists(data.xray_path)) data.xray = readJson(data.xray_path);
   return data;
 }
 
@@ -200,6 +207,34 @@ std::string warnings(const RunData& data) {
   return html.empty() ? "" : "<section>" + html + "</section>\n";
 }
 
+std::string xrayTable(const JsonPlace& xray) {
+  std::string html = "<h2>Priority x-ray at t = " + number(xray.at("time"), 6) + " s: " +
+                     escaped(xray.at("why").text()) + "</h2>\n<table>\n";
+  bool head = true;
+  for (const std::vector<std::string>& row : xrayRows(xray)) {
+    const std::string cell = head ? "th" : "td";
+    html += "<tr>";
+    for (size_t i = 0; i < row.size(); ++i) {
+      const size_t indent = row[i].find_first_not_of(' ');
+      const bool task = i == 0 && indent != std::string::npos && indent > 0;
+      html += "<" + cell + (i == 0 ? (task ? " class='task'" : "") : " class='number'") + ">" + escaped(row[i]) + "</" +
+              cell + ">";
+    }
+    html += "</tr>\n";
+    head = false;
+  }
+  html += "</table>\n<ul>";
+  for (const std::string& sentence : xraySentences(xray)) html += "<li>" + escaped(sentence) + "</li>\n";
+  return html + "</ul>\n";
+}
+
+/// What higher levels took from lower ones; runs that were cut off have none.
+std::string xrays(const RunData& data) {
+  std::string html;
+  for (const JsonPlace& xray : data.xrays().at("xrays").items()) html += xrayTable(xray);
+  return html.empty() ? "" : "<section>" + html + "</section>\n";
+}
+
 constexpr const char* style = R"(
 body { font-family: system-ui, 'DejaVu Sans', 'Liberation Sans', sans-serif; color: #222; background: #f6f6f3;
        margin: 0; }
@@ -210,6 +245,8 @@ section { background: #fff; border: 1px solid #e2e2dc; border-radius: 8px; paddi
 svg { display: block; width: 100%; height: auto; }
 table { border-collapse: collapse; font-size: 14px; }
 th, td { text-align: left; padding: 4px 14px 4px 0; border-bottom: 1px solid #eeeeea; }
+h2 { font-size: 17px; font-weight: 650; margin: 14px 0 8px; }
+td.task { padding-left: 18px; } li { font-size: 14px; margin: 3px 0; }
 .number { text-align: right; font-variant-numeric: tabular-nums; }
 .met { color: #1a7f37; } .missed { color: #c0392b; font-weight: 600; }
 )";
@@ -224,6 +261,7 @@ std::string page(const RunData& data, const std::string& contacts, const std::st
   html += "<section>" + contacts + "</section>\n";
   if (data.touched.rows() > 0) html += "<section>" + touched + "</section>\n";
   if (data.log.rows() > 0) html += "<section>" + drawTaskErrors(data) + "</section>\n";
+  html += xrays(data);
   return html + "</main></body></html>\n";
 }
 

@@ -1,11 +1,13 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/tactus/capsule_keeper.h"
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/progress.h"
 #include "apps/tactus/report.h"
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/xray_view.h"
 #include "dsl/read_stack.h"
 #include "framework/runtime/file_error.h"
 
@@ -14,6 +16,13 @@ namespace {
 
 struct RunArguments : StackArguments {
   std::string out;
+};
+
+/// Watches a run for what its folder tells beyond the log.
+struct Keepers {
+  Keepers(const Session& session, const std::string& folder) : capsules(session, folder), xrays(session) {}
+  CapsuleKeeper capsules;
+  XrayKeeper xrays;
 };
 
 int exitCodeOf(const Session& session, runtime::Ending ending) {
@@ -28,14 +37,15 @@ int exitCodeOf(const Session& session, runtime::Ending ending) {
 }
 
 /// Runs the session into the folder.  A file that cannot be written ends the run; what was written stays.
-runtime::LoopResult runInto(const std::string& folder, Session& session, const std::atomic<bool>& stop) {
+runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers& keepers,
+                            const std::atomic<bool>& stop) {
   runtime::LoopResult result;
   try {
     runtime::writeFile(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
     const auto recorder = session.recordInto(folder);
     {
       Progress progress(session.stack().run.duration);
-      result = session.run({recorder.get(), &progress}, stop);
+      result = session.run({recorder.get(), &keepers.capsules, &keepers.xrays, &progress}, stop);
     }
     if (result.ending != runtime::Ending::file_error) recorder->close();
   } catch (const runtime::FileError& error) {
@@ -67,12 +77,19 @@ int run(const RunArguments& arguments, bool json) {
   claimRunFolder(folder, session);
 
   const Interrupt interrupt;
-  const runtime::LoopResult result = runInto(folder, session, interrupt.stop());
-  const nlohmann::ordered_json description = describeRun(session, result);
+  Keepers keepers(session, folder);
+  const CapsuleKeeper& capsules = keepers.capsules;
+  const runtime::LoopResult result = runInto(folder, session, keepers, interrupt.stop());
+  nlohmann::ordered_json description = describeRun(session, result);
+  for (const std::string& warning : capsules.warnings()) description["warnings"].push_back(warning);
+  description["capsules"] = capsules.files();
   const bool described = wrote([&] { writeJson(folder + "/run.json", description); });
   // A log that could not be written is no ground for pictures; `tactus report` makes them of what there is.
   const bool drawable = session.statistics().ticks() > 0 && result.ending != runtime::Ending::file_error;
-  const bool drawn = drawable && wrote([&] { writeReport(folder); });
+  const bool drawn = drawable && wrote([&] {
+    writeJson(folder + "/" + xray_file, keepers.xrays.describe(result.ending == runtime::Ending::tick_error));
+    writeReport(folder);
+  });
 
   if (json) {
     std::cout << description.dump(2) << "\n";
@@ -80,7 +97,10 @@ int run(const RunArguments& arguments, bool json) {
     std::cout << summaryTable(description);
   }
   if (!result.message.empty()) std::cerr << "tactus run: " << result.message << "; the log is kept\n";
-  for (const std::string& warning : session.warnings()) std::cerr << "tactus run: warning: " << warning << "\n";
+  for (const nlohmann::ordered_json& warning : description["warnings"])
+    std::cerr << "tactus run: warning: " << warning.get<std::string>() << "\n";
+  if (!capsules.files().empty())
+    std::cerr << "failed ticks are kept: tactus solve " << folder << "/" << capsules.files().front() << "\n";
   std::cerr << "run folder: " << folder << (drawn ? ", pictures in report.html\n" : "\n");
   const int code = exitCodeOf(session, result.ending);
   return code == exit_done && !(described && drawn == drawable) ? exit_files : code;
@@ -100,7 +120,9 @@ void addRun(CLI::App& program, Context& context) {
       ->type_name("DIR");
   command->add_flag("--json", context.json, "Print run.json on stdout instead of the summary");
   command->footer(
-      R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml and report.html in the run folder.
+      R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml, xray.json and report.html in the
+run folder, and the first 5 ticks that failed or came late as capsule-<tick>.json, which `tactus solve`
+solves again to the bit.
 
 Examples:
   tactus run examples/explore_table/stack.xml

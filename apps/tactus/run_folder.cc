@@ -3,10 +3,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/tactus/capsule_keeper.h"
 #include "apps/tactus/json_place.h"
 #include "apps/tactus/targets.h"
 #include "apps/tactus/text.h"
 #include "apps/tactus/versions.h"
+#include "apps/tactus/xray_view.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/percentile.h"
 
@@ -104,8 +106,12 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   if (!fs::is_empty(folder) && !isRunFolder(folder)) {
     throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
   }
-  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg"})
+  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg", xray_file})
     fs::remove(fs::path(folder) / picture);
+  std::vector<fs::path> capsules;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (CapsuleKeeper::isCapsule(entry.path().filename().string())) capsules.push_back(entry.path());
+  for (const fs::path& capsule : capsules) fs::remove(capsule);
   writeJson(folder + "/run.json", describeStart(session, status_running));
 }
 

@@ -20,7 +20,9 @@ double norm(const Eigen::LLT<Eigen::MatrixXd>& mass, const VectorXd& torque) {
 }  // namespace
 
 void ProblemSampler::observe(const runtime::ObservedTick& tick) {
-  if (ticks_++ % every_ == 0) problems_.push_back(tick.controller.problem());
+  if (ticks_++ % every_ != 0) return;
+  problems_.push_back(tick.controller.problem());
+  times_.push_back(tick.sensed.time);
 }
 
 Answers solveAll(control::BackEnd& back_end, const std::vector<control::TickProblem>& problems) {
@@ -33,6 +35,7 @@ Answers solveAll(control::BackEnd& back_end, const std::vector<control::TickProb
     const auto start = Clock::now();
     back_end.solve(problem, solution);
     answers.solve_us.push_back(std::chrono::duration<double, std::micro>(Clock::now() - start).count());
+    answers.solutions.push_back(solution);
     if (solution.status != control::Status::ok) {
       ++answers.unsolved;
       answers.torques.emplace_back();

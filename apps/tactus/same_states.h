@@ -14,16 +14,19 @@ class ProblemSampler final : public runtime::Observer {
   explicit ProblemSampler(long every) : every_(every) {}
   void observe(const runtime::ObservedTick& tick) override;
   const std::vector<control::TickProblem>& problems() const { return problems_; }
+  const std::vector<double>& times() const { return times_; }      ///< of the problems, s
 
  private:
   long every_;
   long ticks_ = 0;
   std::vector<control::TickProblem> problems_;
+  std::vector<double> times_;
 };
 
 /// What one back end answered to a list of problems.
 struct Answers {
   std::vector<Eigen::VectorXd> torques;                            ///< empty where it did not solve
+  std::vector<control::TickSolution> solutions;
   std::vector<double> solve_us;
   long unsolved = 0;                                               ///< infeasible or failed
   bool has_kkt = false;

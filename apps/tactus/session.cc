@@ -24,6 +24,17 @@ std::unique_ptr<sim::SimbodyPlant> makePlant(const dsl::Stack& stack, const desc
 
 }  // namespace
 
+std::map<std::string, std::string> taskPlaces(const dsl::Stack& stack) {
+  std::map<std::string, std::string> places;
+  for (const dsl::LevelDescription& level : stack.levels) {
+    for (const dsl::ElementInstance& task : level.tasks) {
+      places[task.name] =
+          task.place.file + ":" + std::to_string(task.place.line) + ":" + std::to_string(task.place.column);
+    }
+  }
+  return places;
+}
+
 Session::Session(dsl::Stack stack, const control::Registry& registry)
     : stack_(std::move(stack)),
       scene_(stack_.scene(stack_.run.seed)),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ struct SoughtFeature {
   std::optional<Eigen::Vector3d> truth_W;                          ///< none: no such object, or it has no top
 };
 
+/// Where each task stands in the stack: "file:line:column".
+std::map<std::string, std::string> taskPlaces(const dsl::Stack& stack);
+
 /// A stack brought to life once: scene of its seed, controller, plant, and the watchers of the run.
 class Session {
  public:
@@ -44,6 +48,7 @@ class Session {
 
   const dsl::Stack& stack() const { return stack_; }
   control::Controller& controller() { return *controller_; }
+  const control::Controller& controller() const { return *controller_; }
   const runtime::RunStatistics& statistics() const { return statistics_; }
   const std::vector<SoughtFeature>& features() const { return features_; }
   std::string backEndName() const;

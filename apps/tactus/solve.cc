@@ -1,11 +1,17 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstring>
 #include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/tactus/command.h"
+#include "apps/tactus/conflict_json.h"
 #include "apps/tactus/program.h"
 #include "apps/tactus/stack_arguments.h"
 #include "apps/tactus/text.h"
+#include "dsl/capsule.h"
 #include "dsl/nearest_name.h"
 #include "dsl/tick_file.h"
 #include "framework/runtime/file_error.h"
@@ -13,12 +19,16 @@
 namespace tactus::app {
 namespace {
 
+using nlohmann::ordered_json;
+
 /// Options that have a flag of their own; all others go through --option.
 constexpr const char* named_options[] = {"projection", "inequalities", "objective", "metric", "solver"};
 
+constexpr const char* any_back_end = "any";
+
 struct SolveArguments {
   std::string file;
-  std::string back_end;
+  std::string back_end;                                            ///< "" = the one that a capsule recorded
   std::map<std::string, std::string> named;
   std::vector<std::string> others;                                 ///< name=value
   std::vector<std::string> plugins;
@@ -62,9 +72,9 @@ std::unique_ptr<control::BackEnd> makeBackEnd(const control::Registry& registry,
   }
 }
 
-control::TickProblem readProblem(const std::string& file) {
+dsl::TickFile readFile(const std::string& file) {
   try {
-    return dsl::readTickProblem(file);
+    return dsl::readTickFile(file);
   } catch (const dsl::TickFileError& error) {
     throw runtime::FileError(file, error.what());
   }
@@ -82,25 +92,170 @@ std::string summary(const control::TickSolution& solution) {
   return text + "\n";
 }
 
-int solve(const SolveArguments& arguments, bool json) {
-  using Clock = std::chrono::steady_clock;
-  Program program(arguments.plugins);
-  const BackEndChoice choice = program.backEndChoice(arguments.back_end);
-  const control::ElementValues values = valuesOf(program.backEndRow(choice.name), chosenOptions(arguments, choice));
-  const control::TickProblem problem = readProblem(arguments.file);
-  const std::unique_ptr<control::BackEnd> back_end = makeBackEnd(program.registry(), values);
+/// One back end ready to solve the file's problem.
+struct Request {
+  std::string name;
+  control::ElementValues values;
+  const dsl::Capsule* capsule = nullptr;                           ///< whose state it starts from; null: afresh
+};
 
+struct Answer {
   control::TickSolution solution;
-  back_end->prepare(problem, solution);
-  const auto start = Clock::now();
-  back_end->solve(problem, solution);
-  const double solve_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  double solve_us = 0;
+};
 
-  std::cout << (json ? dsl::solutionToJson(problem, solution, choice.name, solve_us) : summary(solution));
-  if (solution.status == control::Status::ok) return exit_done;
-  std::cerr << "tactus solve: " << (solution.status == control::Status::infeasible ? "infeasible" : "failed")
-            << (solution.message.empty() ? "" : ": " + solution.message) << "\n";
-  return exit_numerical;
+/// The back end and the options that the capsule recorded, some replaced by those of the command line.
+Request recorded(Program& program, const dsl::Capsule& capsule, const SolveArguments& arguments) {
+  const control::ElementTable& table = program.registry().elements();
+  if (const size_t dot = capsule.back_end.find('.'); dot != std::string::npos && !table.findBackEnd(capsule.back_end))
+    program.plugins().loadNamed(capsule.back_end.substr(0, dot));
+  BackEndChoice choice{capsule.back_end, capsule.back_end, capsule.options};
+  return {choice.name, valuesOf(program.backEndRow(choice.name), chosenOptions(arguments, choice)), &capsule};
+}
+
+Request requested(Program& program, const dsl::TickFile& file, const SolveArguments& arguments) {
+  if (arguments.back_end.empty()) {
+    if (file.capsule) return recorded(program, *file.capsule, arguments);
+    throw UsageError("--backend is missing; only a capsule of a run names its own");
+  }
+  const BackEndChoice choice = program.backEndChoice(arguments.back_end);
+  return {choice.name, valuesOf(program.backEndRow(choice.name), chosenOptions(arguments, choice)), nullptr};
+}
+
+Answer answer(const control::Registry& registry, const Request& request, const control::TickProblem& problem) {
+  using Clock = std::chrono::steady_clock;
+  const std::unique_ptr<control::BackEnd> back_end = makeBackEnd(registry, request.values);
+  Answer answer;
+  if (request.capsule) {
+    // Wall-clock time does not repeat; the steps that were done in it do.
+    control::Deadline deadline{request.capsule->deadline.iterations};
+    if (request.capsule->late && std::isfinite(request.capsule->deadline.seconds))
+      deadline.iterations = std::min(deadline.iterations, request.capsule->iterations);
+    back_end->setDeadline(deadline);
+  }
+  back_end->prepare(problem, answer.solution);
+  if (request.capsule) back_end->setWarmStart(request.capsule->warm_start);
+  const auto start = Clock::now();
+  back_end->solve(problem, answer.solution);
+  answer.solve_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  // As the controller does: such a torque never reaches the robot.
+  if (!answer.solution.torque.allFinite()) answer.solution.torque.setZero();
+  return answer;
+}
+
+ordered_json toJson(const control::TickProblem& problem, const Request& request, const Answer& answer) {
+  return ordered_json::parse(dsl::solutionToJson(problem, answer.solution, request.name, answer.solve_us));
+}
+
+/// How an answer compares with the one that a capsule holds.
+struct Reproduction {
+  bool exact = false;                                              ///< status and every bit of the torque
+  double difference = 0;                                           ///< largest of a joint, N m
+  std::string joint;                                               ///< where
+
+  Reproduction(const dsl::Capsule& capsule, const control::TickSolution& solution) {
+    const Eigen::VectorXd& torque = solution.torque;
+    const size_t bytes = sizeof(double) * static_cast<size_t>(torque.size());
+    exact = solution.status == capsule.status && std::memcmp(torque.data(), capsule.torque.data(), bytes) == 0;
+    if (torque.size() == 0) return;
+    Eigen::Index at = 0;
+    difference = (torque - capsule.torque).cwiseAbs().maxCoeff(&at);
+    joint = capsule.joints[static_cast<size_t>(at)];
+  }
+
+  std::string text(const dsl::Capsule& capsule, const control::TickSolution& solution) const {
+    if (exact) return "reproduced to the bit";
+    std::string text = "not reproduced: ";
+    if (solution.status != capsule.status) {
+      text += "the run had status " + std::string(dsl::statusName(capsule.status)) + ", this is " +
+              dsl::statusName(solution.status) + "; ";
+    }
+    return text + "the torque is off by " + rounded(difference) + " N m at joint " + joint +
+           (capsule.late ? " (the tick was late by the clock, which does not repeat)" : "");
+  }
+};
+
+/// Of an infeasible problem: adds `conflict` to the answer and returns its sentence.
+std::string addConflict(const dsl::TickFile& file, const control::TickSolution& solution, ordered_json& answer) {
+  if (solution.status != control::Status::infeasible) return "";
+  control::ConflictNames names;
+  if (file.capsule) names = {file.capsule->joints, file.capsule->places};
+  const control::Conflict conflict = control::findConflict(file.problem);
+  answer["conflict"] = conflictToJson(conflict, file.problem, names);
+  return control::describe(conflict, file.problem, names);
+}
+
+int solveOne(Program& program, const dsl::TickFile& file, const SolveArguments& arguments, bool json) {
+  const Request request = requested(program, file, arguments);
+  const Answer found = answer(program.registry(), request, file.problem);
+  const control::TickSolution& solution = found.solution;
+  ordered_json data = toJson(file.problem, request, found);
+
+  std::optional<Reproduction> reproduction;
+  if (request.capsule) {
+    const dsl::Capsule& capsule = *request.capsule;
+    reproduction.emplace(capsule, solution);
+    data["capsule"] = {{"reproduced", reproduction->exact},
+                       {"difference_Nm", reproduction->difference},
+                       {"tick", capsule.tick},
+                       {"time", capsule.time},
+                       {"recorded_status", dsl::statusName(capsule.status)}};
+    std::cerr << "tactus solve: tick " << capsule.tick << ", t = " << rounded(capsule.time, 6) << " s, "
+              << capsule.back_end << ": " << reproduction->text(capsule, solution) << "\n";
+  }
+  const std::string why = addConflict(file, solution, data);
+  std::cout << (json ? data.dump() + "\n" : summary(solution));
+  if (solution.status != control::Status::ok) {
+    std::cerr << "tactus solve: " << dsl::statusName(solution.status)
+              << (solution.message.empty() ? "" : ": " + solution.message) << "\n";
+  }
+  if (!why.empty()) std::cerr << "tactus solve: " << why << "\n";
+  if (reproduction && !reproduction->exact) return exit_mismatch;
+  return solution.status == control::Status::ok ? exit_done : exit_numerical;
+}
+
+/// Every back end that there is, one line each.
+int solveAny(Program& program, const dsl::TickFile& file, const SolveArguments& arguments, bool json) {
+  if (!chosenOptions(arguments, {}).empty()) throw UsageError("--backend any takes no options: each has its own");
+  std::vector<Request> requests;
+  if (file.capsule) requests.push_back(recorded(program, *file.capsule, arguments));
+  for (const std::string& name : program.registry().names(control::ElementKind::back_end)) {
+    if (!requests.empty() && file.capsule && name == file.capsule->back_end) continue;
+    requests.push_back({name, valuesOf(program.backEndRow(name), {}), nullptr});
+  }
+  ordered_json all = ordered_json::array();
+  std::vector<std::vector<std::string>> rows{
+      {"back end", "status", "largest torque (N m)", "iterations", "solve (µs)"}};
+  if (file.capsule) rows.front().push_back("from the recorded (N m)");
+  bool solved = false;
+  std::string why;
+  for (const Request& request : requests) {
+    const Answer found = answer(program.registry(), request, file.problem);
+    const control::TickSolution& solution = found.solution;
+    solved |= solution.status == control::Status::ok;
+    ordered_json entry = toJson(file.problem, request, found);
+    const std::string sentence = addConflict(file, solution, entry);
+    if (why.empty()) why = sentence;
+    rows.push_back({request.name, dsl::statusName(solution.status), rounded(solution.torque.cwiseAbs().maxCoeff()),
+                    std::to_string(solution.iterations), rounded(found.solve_us, 3)});
+    if (file.capsule) {
+      const Reproduction reproduction(*file.capsule, solution);
+      entry["capsule"] = {{"reproduced", reproduction.exact}, {"difference_Nm", reproduction.difference}};
+      rows.back().push_back(reproduction.exact ? "the same bits" : rounded(reproduction.difference));
+    }
+    all.push_back(std::move(entry));
+  }
+  std::cout << (json ? all.dump() + "\n" : textTable(rows));
+  if (!why.empty()) std::cerr << "tactus solve: " << why << "\n";
+  return solved ? exit_done : exit_numerical;
+}
+
+int solve(const SolveArguments& arguments, bool json) {
+  Program program(arguments.plugins);
+  if (arguments.back_end == any_back_end) return solveAny(program, readFile(arguments.file), arguments, json);
+  // A word that names no back end is refused whatever the file is.
+  if (!arguments.back_end.empty()) program.backEndChoice(arguments.back_end);
+  return solveOne(program, readFile(arguments.file), arguments, json);
 }
 
 }  // namespace
@@ -108,11 +263,12 @@ int solve(const SolveArguments& arguments, bool json) {
 void addSolve(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("solve", "Solve one tick problem from a file");
   const auto arguments = std::make_shared<SolveArguments>();
-  command->add_option("TICK", arguments->file, "A tick problem, JSON of the format tactus-tick/1")
+  command->add_option("TICK", arguments->file, "A tick problem, JSON of the format tactus-tick/1, or a run's capsule")
       ->required()
       ->type_name("");
-  command->add_option("--backend", arguments->back_end, "null-space, qp, qp/nlopt, …")
-      ->required()
+  command
+      ->add_option("--backend", arguments->back_end,
+                   "null-space, qp, qp/nlopt, …; any: all of them, side by side; without it the one of a capsule")
       ->type_name("BACKEND");
   for (const char* name : named_options) {
     command->add_option(std::string("--") + name, arguments->named[name], "Option of the back end")
@@ -122,12 +278,17 @@ void addSolve(CLI::App& program, Context& context) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   declarePlugins(*command, arguments->plugins);
-  command->add_flag("--json", context.json, "{backend, status, torque, contact_forces?, levels, solve_us, …}");
-  command->footer(R"(An infeasible problem prints its JSON all the same and ends with exit code 5.
+  command->add_flag("--json", context.json,
+                    "{backend, status, torque, contact_forces?, levels, solve_us, conflict?, capsule?, …}");
+  command->footer(R"(An infeasible problem prints its JSON all the same, with the tasks that contradict each other
+and what would reconcile them, and ends with exit code 5.  A capsule is solved again with the
+back end, options and warm start that it recorded; a torque that is not the recorded one to the bit ends with 1.
 
 Examples:
   tactus solve tick.json --backend null-space --projection augmented --inequalities exact --json
-  tactus solve tick.json --backend qp/nlopt --objective torque --metric inertia --option force-weight=0.1 --json)");
+  tactus solve tick.json --backend qp/nlopt --objective torque --metric inertia --option force-weight=0.1 --json
+  tactus solve runs/press/capsule-21.json
+  tactus solve runs/press/capsule-21.json --backend any)");
   command->callback([=, &context] { context.action = [=, &context] { return solve(*arguments, context.json); }; });
 }
 

@@ -31,6 +31,18 @@ CLI::Validator simulatedTime() {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator timeOfTick() {
+  const auto check = [](std::string& text) -> std::string {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool number = error == std::errc() && end == text.data() + text.size();
+    return number && value >= 0 && value <= dsl::longest_run
+               ? ""
+               : "'" + text + "' is not a number from 0 to " + rounded(dsl::longest_run);
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator seed() {
   const auto check = [](std::string& text) -> std::string {
     std::int32_t value = 0;                                        // as far as a stack's seed reaches

@@ -21,6 +21,9 @@ CLI::Validator positive();
 /// Accepts a simulated time, s.
 CLI::Validator simulatedTime();
 
+/// Accepts the time of a tick, s: from 0.
+CLI::Validator timeOfTick();
+
 /// Accepts a seed.
 CLI::Validator seed();
 

@@ -45,6 +45,7 @@ class BackEnd {
   void solve(const TickProblem& problem, TickSolution& solution) { doSolve(problem, solution); }
 
   void setDeadline(const Deadline& deadline) { deadline_ = deadline; }
+  const Deadline& deadline() const { return deadline_; }
   /// The state that, with the problem, decides the next solution to the bit; empty where every tick starts afresh.
   /// `setWarmStart` after `prepare`; what does not fit the shape is ignored.
   virtual WarmStart warmStart() const { return {}; }
@@ -52,7 +53,6 @@ class BackEnd {
 
  protected:
   explicit BackEnd(Abilities abilities) : abilities_(std::move(abilities)) {}
-  const Deadline& deadline() const { return deadline_; }
 
  private:
   virtual void doPrepare(const TickProblem& shape) = 0;

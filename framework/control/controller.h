@@ -109,6 +109,7 @@ class Controller {
   const TickRecord& record() const { return record_; }
   const SensingGuard& sensing() const { return sensing_; }
   BackEnd& backEnd() { return *back_end_; }
+  const BackEnd& backEnd() const { return *back_end_; }
   const std::vector<NamedSignal>& signals() const { return signals_; }
   const std::vector<Level>& levels() const { return levels_; }
   const Activation& activationOf(std::string_view task) const;

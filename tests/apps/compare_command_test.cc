@@ -36,6 +36,28 @@ TEST(CompareCommand, SameStatesAndClosedLoop) {
   EXPECT_TRUE(json["backends"][2]["closed_loop"]["kkt_max"]["primal"].is_number());
 }
 
+TEST(CompareCommand, SaysWhereBackEndsDifferAndWhy) {
+  // So stiff that the torque is limited: the cascade scales it, the programme holds some joints at their limits.
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "stiffness=\"1\"", "stiffness=\"500\"");
+  const std::vector<std::string> arguments{"compare", stack, "--backends", "null-space,qp/nlopt", "--duration", "0.1",
+                                           "--every", "10"};
+  std::vector<std::string> with_json = arguments;
+  with_json.push_back("--json");
+  const nlohmann::json same = tactus(with_json).json()["backends"][1]["same_states"];
+  ASSERT_EQ(same["ticks"].size(), 10u);
+  EXPECT_GT(same["other_limits"].get<int>(), 0);
+  bool told = false;
+  for (const nlohmann::json& tick : same["ticks"]) {
+    EXPECT_GT(tick["solve_us"].get<double>(), 0);
+    told |= !tick["limits_here"].empty();
+  }
+  EXPECT_TRUE(told);
+  const Outcome table = tactus(arguments);
+  EXPECT_THAT(table.out, HasSubstr("where qp/nlopt is furthest from null-space\n  t = "));
+  EXPECT_THAT(table.out, HasSubstr(" % apart: at their torque limits here alone: "));
+}
+
 TEST(CompareCommand, TableForPeople) {
   const Outcome outcome =
       tactus({"compare", data("press.xml"), "--backends", "null-space,qp/nlopt", "--duration", "0.05"});

@@ -54,6 +54,25 @@ TEST(SolveCommand, InfeasibleIsJsonAllTheSame) {
   EXPECT_THAT(outcome.err, HasSubstr("infeasible"));
 }
 
+TEST(SolveCommand, InfeasibleSaysWhoContradictsWhomAndWhatWouldDo) {
+  const Outcome outcome = tactus({"solve", data("infeasible.json"), "--backend", "qp", "--json"});
+  // τ₁ ≥ 1, but the wall may neither be pressed nor approached.
+  const std::string sentence =
+      "task 'wall' and the torque limit of joint 1 contradict each other; any one of these would do: let 'wall' be "
+      "accelerated by 1 m/s², allow the force of 'wall' 1 N more, or allow joint 1 1 N m beyond its lower limit";
+  EXPECT_THAT(outcome.err, HasSubstr("tactus solve: " + sentence + "\n"));
+  const nlohmann::json conflict = outcome.json()["conflict"];
+  EXPECT_EQ(conflict["sentence"], sentence);
+  EXPECT_EQ(conflict["groups"], nlohmann::json::parse(R"([{"what": "rows", "task": "wall"},
+      {"what": "forces", "task": "wall"}, {"what": "torque-limit", "joint": 1}])"));
+  ASSERT_EQ(conflict["relaxations"].size(), 3u);
+  EXPECT_EQ(conflict["relaxations"][2]["unit"], "N m");
+  EXPECT_NEAR(conflict["relaxations"][2]["amount"].get<double>(), 1, 1e-9);
+  EXPECT_EQ(conflict["relaxations"][2]["enough"], true);
+  EXPECT_EQ(conflict["beyond"], nlohmann::json::parse(R"([{"joint": 1, "beyond_Nm": 1.0}])"));
+  EXPECT_FALSE(tactus({"solve", data("two_levels.json"), "--backend", "qp", "--json"}).json().contains("conflict"));
+}
+
 TEST(SolveCommand, OptionOfAnotherBackEnd) {
   const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "null-space", "--solver", "ipopt"});
   EXPECT_EQ(outcome.exit_code, 2);

@@ -1,4 +1,4 @@
-// A plugin whose task goes wrong in the way, and from the time on, that the stack says.
+// A plugin whose task or back end goes wrong in the way, and from the time on, that the stack says.
 
 #include <limits>
 #include <stdexcept>
@@ -34,6 +34,36 @@ class Naughty final : public Task {
   double from_;
 };
 
+/// τ = Σ JᵀF / (1 + ticks so far): the count is its warm start, and what it answers rests on it.
+class Moody final : public BackEnd {
+ public:
+  explicit Moody(const ElementValues& values)
+      : BackEnd({.strict_levels = true, .inequalities = true, .torque_limits = true}),
+        fault_(values.text("fault")),
+        from_(static_cast<int>(values.real("from"))),
+        until_(static_cast<int>(values.real("until"))) {}
+
+  WarmStart warmStart() const override { return {ticks_}; }
+  void setWarmStart(const WarmStart& state) override { ticks_ = state.at(0); }
+
+ private:
+  void doPrepare(const TickProblem&) override {}
+  void doSolve(const TickProblem& problem, TickSolution& solution) override {
+    solution.torque.setZero();
+    for (const TickLevel& level : problem.levels)
+      for (const TickTask& task : level.tasks) solution.torque += task.J().transpose() * task.F();
+    solution.torque /= 1 + ticks_;
+    const bool wrong = ticks_ >= from_ && ticks_ < until_;
+    ++ticks_;
+    solution.status = wrong ? Status::failed : Status::ok;
+    solution.message = wrong ? "not in the mood" : "";
+    solution.late = wrong && fault_ == "late";
+    if (wrong && fault_ == "nan") solution.torque[0] = std::numeric_limits<double>::quiet_NaN();
+  }
+  std::string fault_;
+  int from_, until_, ticks_ = 0;
+};
+
 void registerElements(Registry& registry) {
   ElementRow row;
   row.name = "naughty.task";
@@ -41,6 +71,15 @@ void registerElements(Registry& registry) {
   row.attributes = {{.name = "fault", .type = ValueType::choice, .required = true,
                      .choices = {"capacity", "nan", "huge", "throw", "throw-other", "rows", "resize"}},
                     {.name = "from", .type = ValueType::real, .unit = "s", .default_text = "0.0205"}};
+  ElementRow moody;
+  moody.name = "naughty.moody";
+  moody.kind = ElementKind::back_end;
+  moody.description = "Fails when it likes to.";
+  moody.attributes = {{.name = "fault", .type = ValueType::choice, .default_text = "fail",
+                       .choices = {"fail", "late", "nan"}},
+                      {.name = "from", .type = ValueType::real, .default_text = "20"},
+                      {.name = "until", .type = ValueType::real, .default_text = "1e6"}};
+  registry.addBackEnd(moody, [](const ElementValues& values) { return std::make_unique<Moody>(values); });
   registry.addTask(row, [](const BuildContext& context) { return std::make_unique<Naughty>(context); });
 }
 

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/tactus/session.h"
+
+namespace tactus::app {
+
+/// Writes the first ticks of a run that failed or came late into its folder, each as capsule-<tick>.json
+/// (dsl/capsule.h).  A capsule that cannot be written is a warning: no further one is tried, and the run goes on.
+class CapsuleKeeper final : public runtime::Observer {
+ public:
+  static constexpr int most_capsules = 5;
+
+  CapsuleKeeper(const Session& session, const std::string& folder);
+
+  void observe(const runtime::ObservedTick& tick) override;
+
+  const std::vector<std::string>& files() const { return files_; }       ///< names within the folder
+  /// What could not be written, and which tasks contradicted each other in the first infeasible tick.
+  std::vector<std::string> warnings() const;
+
+  static bool isCapsule(const std::string& file_name);
+
+ private:
+  void write(const runtime::ObservedTick& tick);
+
+  const dsl::Stack& stack_;
+  std::string folder_;
+  int tick_ = 0;
+  control::WarmStart before_;                                      // of the tick to come
+  std::vector<std::string> files_;
+  std::vector<std::string> warnings_;
+  std::optional<control::TickProblem> infeasible_;                 // the first one
+  double infeasible_time_ = 0;                                     // s
+  std::vector<std::string> joints_;
+};
+
+}  // namespace tactus::app
