@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "plugins/null-space/null_space.h"
-#include "plugins/qp/qp_back_end.h"
+#include "plugins/qp/solvers.h"
 
 namespace tactus {
 namespace {
@@ -115,7 +115,7 @@ void nullSpace(benchmark::State& state, null_space::Cascade cascade, null_space:
 void weightedQp(benchmark::State& state, bool ipopt, qp::Objective objective) {
   qp::WeightedQpOptions options;
   options.objective = objective;
-  qp::QpBackEnd back_end(options, ipopt ? qp::makeIpoptSolver() : qp::makeNloptSolver());
+  qp::QpBackEnd back_end(options, qp::makeReferenceSolver(ipopt ? qp::makeIpoptSolver() : qp::makeNloptSolver()));
   run(state, back_end);
 }
 

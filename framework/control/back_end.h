@@ -44,6 +44,9 @@ class BackEnd {
   void solve(const TickProblem& problem, TickSolution& solution) { doSolve(problem, solution); }
 
   void setDeadline(const Deadline& deadline) { deadline_ = deadline; }
+  /// Whether ranks are wanted from back ends that can do without them and would compute them for the report alone; off,
+  /// their ranks stay 0 and nullities dof.
+  void setReportsRanks(bool wanted) { reports_ranks_ = wanted; }
   /// The state that, with the problem, decides the next solution to the bit; empty where every tick starts afresh.
   /// `setWarmStart` after `prepare`; what does not fit the shape is ignored.
   virtual WarmStart warmStart() const { return {}; }
@@ -52,6 +55,7 @@ class BackEnd {
  protected:
   explicit BackEnd(Abilities abilities) : abilities_(std::move(abilities)) {}
   const Deadline& deadline() const { return deadline_; }
+  bool reportsRanks() const { return reports_ranks_; }
 
  private:
   virtual void doPrepare(const TickProblem& shape) = 0;
@@ -59,6 +63,7 @@ class BackEnd {
 
   Abilities abilities_;
   Deadline deadline_;
+  bool reports_ranks_ = true;
 };
 
 }  // namespace tactus::control
