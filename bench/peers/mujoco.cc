@@ -1,34 +1,35 @@
-#include <mujoco/mujoco.h>
-
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 #include <vector>
 
 #include "bench/peers/engine.h"
-#include "bench/peers/mjcf.h"
+#include "tests/witness/mujoco/load.h"
 
 namespace tactus::bench {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-struct Delete {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-std::unique_ptr<mjModel, Delete> load(const Problem& problem) {
-  const std::string text = mjcf(problem);
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  const int file = mj_makeEmptyFileVFS(files.get(), "robot.xml", static_cast<int>(text.size()));
-  std::copy(text.begin(), text.end(), static_cast<char*>(files->filedata[file]));
-  char error[1000] = "";
-  std::unique_ptr<mjModel, Delete> model(mj_loadXML("robot.xml", files.get(), error, sizeof error));
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error("MuJoCo refuses '" + problem.name + "': " + error);
-  return model;
+/// The problem's bodies as a robot: link 0 is the world, link i + 1 is body i, rotors are in its inertia.
+description::Robot robotOf(const Problem& problem) {
+  description::Robot robot;
+  robot.name = problem.name;
+  robot.links.emplace_back();
+  for (const Body& body : problem.bodies) {
+    description::Joint& joint = robot.joints.emplace_back();
+    joint.name = body.name;
+    joint.type = body.type;
+    joint.parent = body.parent + 1;
+    joint.child = static_cast<int>(robot.links.size());
+    joint.origin = body.origin;
+    description::Link& link = robot.links.emplace_back();
+    link.name = body.name;
+    link.has_inertial = true;
+    link.mass = body.mass;
+    link.centre_of_mass = body.centre_of_mass;
+    link.inertia = body.inertia;
+  }
+  return robot;
 }
 
 /// MuJoCo: of its forward pipeline only the stages that an operation needs.  Its q, q̇ and free joint are those of
@@ -37,13 +38,13 @@ class Mujoco : public Engine {
  public:
   explicit Mujoco(const Problem& problem)
       : problem_(problem),
-        model_(load(problem)),
+        model_(witness::loadMujoco(robotOf(problem), problem.gravity_W)),
         data_(mj_makeData(model_.get())),
         vector_(model_->nv),
         M_(model_->nv, model_->nv),
         J_(3 * point_count, model_->nv) {
     for (int k = 0; k < point_count; ++k)
-      bodies_[k] = mj_name2id(model_.get(), mjOBJ_BODY, std::to_string(problem.points[k].body).c_str());
+      bodies_[k] = mj_name2id(model_.get(), mjOBJ_BODY, problem.bodies[problem.points[k].body].name.c_str());
   }
 
   std::string name() const override { return std::string("MuJoCo ") + mj_versionString(); }
@@ -106,8 +107,8 @@ class Mujoco : public Engine {
   }
 
   const Problem& problem_;
-  std::unique_ptr<mjModel, Delete> model_;
-  std::unique_ptr<mjData, Delete> data_;
+  witness::MujocoModel model_;
+  witness::MujocoData data_;
   std::array<int, point_count> bodies_;
   Eigen::VectorXd vector_;
   RowMajor M_, J_;

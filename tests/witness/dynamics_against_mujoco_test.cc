@@ -173,7 +173,7 @@ TEST(Mujoco, SaysWhyItRefusesARobot) {
     MujocoRobot(robot, {0, 0, -9.81});
     FAIL() << "a moving link without mass was taken";
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("MuJoCo refuses the robot: "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("MuJoCo refuses '" + robot.name + "': "), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("mass and inertia"), std::string::npos) << error.what();
   }
 }

@@ -1,11 +1,10 @@
 #include "tests/witness/mujoco_robot.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
-#include "tests/witness/mjcf.h"
+#include "tests/witness/mujoco/mjcf.h"
 
 namespace tactus::witness {
 namespace {
@@ -15,23 +14,10 @@ using description::JointType;
 using description::Robot;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-mjModel* load(const std::string& mjcf) {
-  const auto files = std::make_unique<mjVFS>();                    // megabytes: not on the stack
-  mj_defaultVFS(files.get());
-  const char* name = "robot.xml";
-  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(mjcf.size()));
-  std::memcpy(files->filedata[0], mjcf.data(), mjcf.size());
-  char error[1000] = "";
-  mjModel* model = mj_loadXML(name, files.get(), error, sizeof error);
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error("MuJoCo refuses the robot: " + std::string(error) + "\n" + mjcf);
-  return model;
-}
-
 }  // namespace
 
 MujocoRobot::MujocoRobot(const Robot& robot, const Eigen::Vector3d& gravity_W)
-    : model_(load(writeMjcf(robot, gravity_W))), data_(mj_makeData(model_.get())) {
+    : model_(loadMujoco(robot, gravity_W)), data_(mj_makeData(model_.get())) {
   for (int link = 0; link < static_cast<int>(robot.links.size()); ++link)
     bodies_.push_back(link == robot.root ? 0 : mj_name2id(model_.get(), mjOBJ_BODY, robot.links[link].name.c_str()));
 

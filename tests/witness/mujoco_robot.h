@@ -1,12 +1,10 @@
 #pragma once
 
-#include <mujoco/mujoco.h>
-
 #include <Eigen/Geometry>
-#include <memory>
 #include <vector>
 
 #include "framework/description/robot.h"
+#include "tests/witness/mujoco/load.h"
 
 namespace tactus::witness {
 
@@ -34,12 +32,6 @@ class MujocoRobot {
   Eigen::MatrixXd pointJacobian(int link, const Eigen::Vector3d& point_W) const;
 
  private:
-  struct DeleteModel {
-    void operator()(mjModel* model) const { mj_deleteModel(model); }
-  };
-  struct DeleteData {
-    void operator()(mjData* data) const { mj_deleteData(data); }
-  };
   /// Consecutive numbers of one of MuJoCo's joints.
   struct Part {
     int from_q, to_q, count_q;                                     // ours, MuJoCo's
@@ -53,8 +45,8 @@ class MujocoRobot {
   void addPart(const std::string& mujoco_joint, int& from_q, int& from_v);
   Eigen::MatrixXd inOurRates(const std::vector<double>& jacobian, int rows) const;
 
-  std::unique_ptr<mjModel, DeleteModel> model_;
-  std::unique_ptr<mjData, DeleteData> data_;
+  MujocoModel model_;
+  MujocoData data_;
   std::vector<Part> parts_;
   std::vector<FreeJoint> free_joints_;
   std::vector<int> bodies_;                                        // by link

@@ -1,4 +1,4 @@
-#include "tests/witness/mjcf.h"
+#include "tests/witness/mujoco/mjcf.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
