@@ -12,6 +12,18 @@ constexpr double rotation_tolerance = 1e-15;                       // cosine bel
 constexpr double recompute_below = 1e-8;
 constexpr double negligible_ratio = 1e-3;                          // to the rank tolerance
 
+/// a ← (I − β v vᵀ) a for `width` neighbouring columns, whose sums stay in registers.
+template <int width>
+void reflectStrip(const double* v, double beta, int rows, double* a, Eigen::Index stride) {
+  double w[width];
+  for (int j = 0; j < width; ++j) w[j] = v[0] * a[j];
+  for (int k = 1; k < rows; ++k)
+    for (int j = 0; j < width; ++j) w[j] += v[k] * a[k * stride + j];
+  for (int j = 0; j < width; ++j) w[j] *= beta;
+  for (int k = 0; k < rows; ++k)
+    for (int j = 0; j < width; ++j) a[k * stride + j] -= v[k] * w[j];
+}
+
 }  // namespace
 
 double fadeWeight(double sigma, const RankOptions& options) {
@@ -31,7 +43,6 @@ PriorityFactor::PriorityFactor(int dimension, int column_capacity, int stage_cap
       inverse_(dimension, dimension),
       triangle_(dimension, column_capacity),
       buffer_(dimension, std::max(dimension, column_capacity)),
-      row_(std::max(dimension, column_capacity)),
       order_(column_capacity),
       sigma_(dimension),
       tall_(column_capacity, dimension),
@@ -197,12 +208,13 @@ void PriorityFactor::reflect(const Memory& memory, int i, ColumnsRef columns) {
   const int row = memory.stage.first + i;
   const int rows = dimension_ - row;
   const int count = static_cast<int>(columns.cols());
-  const auto v = memory.v.col(i).tail(rows);
-  auto w = row_.head(count);
-  w = v[0] * columns.row(row);
-  for (int k = 1; k < rows; ++k) w += v[k] * columns.row(row + k);
-  w *= memory.beta[i];
-  for (int k = 0; k < rows; ++k) columns.row(row + k) -= v[k] * w;
+  const double* v = memory.v.col(i).data() + row;
+  double* a = &columns(row, 0);
+  const Eigen::Index stride = columns.outerStride();
+  int j = 0;
+  for (; j + 8 <= count; j += 8) reflectStrip<8>(v, memory.beta[i], rows, a + j, stride);
+  for (; j + 2 <= count; j += 2) reflectStrip<2>(v, memory.beta[i], rows, a + j, stride);
+  if (j < count) reflectStrip<1>(v, memory.beta[i], rows, a + j, stride);
 }
 
 void PriorityFactor::rotate(const Memory& memory, bool transposed, ColumnsRef columns) {

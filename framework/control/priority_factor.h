@@ -112,7 +112,6 @@ class PriorityFactor {
   Eigen::MatrixXd inverse_;
   RowMajorMatrix triangle_;
   RowMajorMatrix buffer_;
-  Eigen::RowVectorXd row_;
   // Of the last stage, for least squares.
   Eigen::VectorXi order_;                                          // which column came where
   Eigen::VectorXd sigma_;                                          // falling, where singular directions were computed
