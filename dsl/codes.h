@@ -70,6 +70,8 @@ inline constexpr Code shape_not_felt{"W004", "a collision shape is replaced or l
 inline constexpr Code urdf_remark{"W005", "liburdfdom passed over a part of the file"};
 inline constexpr Code meaningless_part{"W006", "a joint of this type makes no use of a part of its description"};
 inline constexpr Code forgotten_centre{"W007", "the centre of mass of a link was probably forgotten"};
+inline constexpr Code unread_part{"W008", "nothing reads a part of a robot's description"};
+inline constexpr Code lost_digits{"W009", "a robot far from the world's origin costs digits"};
 inline constexpr Code unused_signal{"W010", "nothing reads a signal"};
 }  // namespace code
 
@@ -87,6 +89,7 @@ inline constexpr std::array all_codes{
     code::several_root_links, code::kinematic_loop,     code::unsupported_joint, code::reversed_limits,
     code::refused_by_urdf,    code::bad_mimic,          code::impossible_robot, code::no_inertia,
     code::bad_mass,           code::bad_inertia,        code::shape_not_felt,   code::urdf_remark,
-    code::meaningless_part,   code::forgotten_centre,   code::unused_signal};
+    code::meaningless_part,   code::forgotten_centre,   code::unread_part,      code::lost_digits,
+    code::unused_signal};
 
 }  // namespace tactus::dsl

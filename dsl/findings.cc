@@ -79,9 +79,20 @@ void Findings::errorAtWord(const Code& code, const XmlElement& element, const Xm
   errorAtValue(code, element, word, message, suggestion);
 }
 
-void Findings::warning(const Code& code, const XmlElement& element, const std::string& message) {
+void Findings::warning(const Code& code, const XmlElement& element, const std::string& message,
+                       const std::string& suggestion) {
   Diagnostic diagnostic = make(code, *element.source, element.at, tagLength(element), message);
   diagnostic.severity = Severity::warning;
+  diagnostic.suggestion = suggestion;
+  diagnostic.path = element.path();
+  add(std::move(diagnostic));
+}
+
+void Findings::warningAtName(const Code& code, const XmlElement& element, const XmlAttribute& attribute,
+                             const std::string& message, const std::string& suggestion) {
+  Diagnostic diagnostic = make(code, *element.source, attribute.name_at, attribute.name.size(), message);
+  diagnostic.severity = Severity::warning;
+  diagnostic.suggestion = suggestion;
   diagnostic.path = element.path();
   add(std::move(diagnostic));
 }

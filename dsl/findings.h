@@ -28,7 +28,10 @@ class Findings {
   /// At the word of that index in an attribute's value.
   void errorAtWord(const Code& code, const XmlElement& element, const XmlAttribute& attribute, std::size_t index,
                    const std::string& message, const std::string& suggestion = "");
-  void warning(const Code& code, const XmlElement& element, const std::string& message);
+  void warning(const Code& code, const XmlElement& element, const std::string& message,
+               const std::string& suggestion = "");
+  void warningAtName(const Code& code, const XmlElement& element, const XmlAttribute& attribute,
+                     const std::string& message, const std::string& suggestion = "");
   void add(Diagnostic diagnostic);
 
   bool hasErrors() const { return !errors_.empty(); }

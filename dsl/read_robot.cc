@@ -33,7 +33,9 @@ const XmlElement& elementAt(const description::Place& place, const RobotFile& fi
 /// What no reader of XML can see.  Faults of masses hinder dynamics alone, and are warnings here.
 void addValidation(const Robot& robot, const RobotFile& file, Findings& findings) {
   for (const auto& found : dynamics::validate(robot, dynamics::MassPolicy::kinematics_only)) {
-    const XmlElement& element = elementAt(found.place, file);
+    const XmlElement& part = elementAt(found.place, file);
+    const XmlElement* mimic = found.fault == dynamics::Fault::mimic ? part.child("mimic") : nullptr;
+    const XmlElement& element = mimic ? *mimic : part;
     if (found.severity == dynamics::RobotFinding::Severity::error) {
       findings.error(codeOf(found.fault), element, found.message);
     } else {
@@ -42,10 +44,7 @@ void addValidation(const Robot& robot, const RobotFile& file, Findings& findings
   }
 }
 
-}  // namespace
-
-Robot readRobot(const std::string& file, std::vector<Diagnostic>& warnings) {
-  Findings findings;
+Robot read(const std::string& file, Findings& findings) {
   const RobotFile checked = checkRobotFile(file, findings);
   findings.throwErrors();
   Robot robot = buildUrdfTree(checked, findings);
@@ -54,8 +53,24 @@ Robot readRobot(const std::string& file, std::vector<Diagnostic>& warnings) {
   findings.throwErrors();
   addValidation(robot, checked, findings);
   findings.throwErrors();
-  warnings.insert(warnings.end(), findings.warnings().begin(), findings.warnings().end());
   return robot;
+}
+
+}  // namespace
+
+Robot readRobot(const std::string& file, std::vector<Diagnostic>& warnings) {
+  Findings findings;
+  const auto giveWarnings = [&] {
+    warnings.insert(warnings.end(), findings.warnings().begin(), findings.warnings().end());
+  };
+  try {
+    Robot robot = read(file, findings);
+    giveWarnings();
+    return robot;
+  } catch (const InvalidStack&) {
+    giveWarnings();
+    throw;
+  }
 }
 
 }  // namespace tactus::dsl

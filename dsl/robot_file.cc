@@ -23,6 +23,7 @@ class RobotChecker {
   RobotChecker(RobotFile& file, Findings& findings) : file_(file), findings_(findings) {}
 
   void run() {
+    checkParts(*file_.root, findings_);
     for (const auto& child : file_.root->children) {
       if (child->name == "link" && hasNewName(*child, links_)) file_.links.push_back(child.get());
       if (child->name == "joint" && hasNewName(*child, joints_)) file_.joints.push_back(child.get());
@@ -37,6 +38,10 @@ class RobotChecker {
   bool hasNewName(const XmlElement& element, std::map<std::string, const XmlElement*>& known) {
     const XmlAttribute* name = requireAttribute(element, "name", findings_);
     if (!name) return false;
+    if (name->value.empty()) {
+      findings_.errorAtValue(code::bad_value, element, *name, "the name of a " + element.name + " must not be empty");
+      return false;
+    }
     if (known.emplace(name->value, &element).second) return true;
     findings_.errorAtValue(code::duplicate_name, element, *name,
                            "the robot has a " + element.name + " '" + name->value + "' already");
@@ -85,7 +90,7 @@ class RobotChecker {
       for (const char* name : {"damping", "friction"}) readNumbers(*dynamics, name, not_negative, findings_);
     const XmlElement* limit = type->value == "continuous" ? joint.child("limit")
                                                           : requireChild(joint, "limit", findings_);
-    if (limit) checkLimit(*limit);
+    if (limit) checkLimit(*limit, type->value != "continuous");
   }
 
   void checkAxis(const XmlElement& axis) {
@@ -94,14 +99,24 @@ class RobotChecker {
       findings_.errorAtValue(code::bad_value, axis, *axis.attribute("xyz"), "an axis must not be zero");
   }
 
-  void checkLimit(const XmlElement& limit) {
+  /// A limit that a bounded joint does not give is 0.
+  void checkLimit(const XmlElement& limit, bool bounded) {
     for (const char* name : {"effort", "velocity"}) readRequiredNumbers(limit, name, not_negative, findings_);
     const auto lower = readNumbers(limit, "lower", one_real, findings_);
     const auto upper = readNumbers(limit, "upper", one_real, findings_);
-    if (!lower.empty() && !upper.empty() && lower[0] > upper[0])
-      findings_.errorAtValue(code::reversed_limits, limit, *limit.attribute("lower"),
-                             "the lower limit " + control::formatNumber(lower[0]) + " lies above the upper limit " +
-                                 control::formatNumber(upper[0]));
+    const XmlAttribute *lower_given = limit.attribute("lower"), *upper_given = limit.attribute("upper");
+    const bool lower_wrong = lower_given && lower.empty(), upper_wrong = upper_given && upper.empty();
+    if (lower_wrong || upper_wrong || (!bounded && (!lower_given || !upper_given))) return;
+    const double from = lower.empty() ? 0 : lower[0], to = upper.empty() ? 0 : upper[0];
+    if (from <= to) return;
+    const auto said = [](const XmlAttribute* given, double value) {
+      return given ? " " + control::formatNumber(value) : ", which is not given and therefore 0";
+    };
+    findings_.errorAtValue(code::reversed_limits, limit, lower_given ? *lower_given : *upper_given,
+                           lower_given ? "the lower limit" + said(lower_given, from) + " lies above the upper limit" +
+                                             said(upper_given, to)
+                                       : "the upper limit" + said(upper_given, to) + " lies below the lower limit" +
+                                             said(lower_given, from));
   }
 
   void checkEnd(const XmlElement& joint, const char* which) {
@@ -118,18 +133,24 @@ class RobotChecker {
   void checkTree() {
     std::map<std::string, const XmlElement*> mover;
     std::map<std::string, std::vector<std::string>> children;
+    if (file_.links.empty()) return findings_.error(code::no_root_link, *file_.root, "the robot has no link");
     for (const XmlElement* joint : file_.joints) {
       const XmlElement& end = *joint->child("child");
       const XmlAttribute& child = *end.attribute("link");
-      children[joint->child("parent")->attribute("link")->value].push_back(child.value);
-      if (!mover.emplace(child.value, joint).second)
+      const std::string& parent = joint->child("parent")->attribute("link")->value;
+      const auto [first, fresh] = mover.emplace(child.value, joint);
+      children[parent].push_back(child.value);
+      if (parent == child.value)
         findings_.errorAtValue(code::kinematic_loop, end, child,
-                               "link '" + child.value + "' is the child of another joint already");
+                               "joint '" + nameOf(*joint) + "' joins link '" + parent + "' to itself");
+      else if (!fresh)
+        findings_.errorAtValue(code::kinematic_loop, end, child,
+                               "link '" + child.value + "' is the child of joint '" + nameOf(*first->second) +
+                                   "' already");
     }
     std::vector<const XmlElement*> roots;
     for (const XmlElement* link : file_.links)
       if (!mover.count(nameOf(*link))) roots.push_back(link);
-    if (file_.links.empty()) return findings_.error(code::no_root_link, *file_.root, "the robot has no link");
     if (roots.empty())
       return findings_.error(code::no_root_link, *file_.root, "no link is the root: every one is the child of a joint");
     for (std::size_t i = 1; i < roots.size(); ++i)
@@ -149,7 +170,21 @@ class RobotChecker {
     for (const XmlElement* link : file_.links)
       if (!reached.count(nameOf(*link)))
         return findings_.error(code::kinematic_loop, *link,
-                               "link '" + nameOf(*link) + "' is part of a closed loop of joints");
+                               "link '" + nameOf(*link) + "' hangs in a closed loop of joints: " +
+                                   loopAbove(nameOf(*link), mover));
+  }
+
+  /// The joints of the loop that the way up from a link runs into: "'a', 'b', 'c'".
+  static std::string loopAbove(std::string link, const std::map<std::string, const XmlElement*>& mover) {
+    const auto above = [&](const std::string& name) {
+      return mover.at(name)->child("parent")->attribute("link")->value;
+    };
+    std::set<std::string> passed;
+    while (passed.insert(link).second) link = above(link);
+    std::string joints;
+    for (const std::string first = link; joints.empty() || link != first; link = above(link))
+      joints = "'" + nameOf(*mover.at(link)) + "'" + (joints.empty() ? "" : ", ") + joints;
+    return joints;
   }
 
   static std::string nameOf(const XmlElement& element) { return element.attribute("name")->value; }

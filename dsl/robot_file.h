@@ -27,6 +27,10 @@ bool hasSeveralFreedoms(std::string_view joint_type);
 /// Is that part of a joint's description, e.g. "limit", without use for a joint of that type?
 bool isMeaningless(std::string_view joint_type, std::string_view part);
 
+/// Warns of attributes that nothing reads and of elements whose names look like slips, from <robot> down; no element
+/// stands more often than it is read.
+void checkParts(const XmlElement& robot, Findings& findings);
+
 /// Every mimic names another joint that moves, both have one degree of freedom, and none follows itself.
 void checkMimics(const RobotFile& file, Findings& findings);
 

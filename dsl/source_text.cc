@@ -77,7 +77,7 @@ int countCharacters(std::string_view text) {
 
 std::optional<std::string> readFile(const std::string& file) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
+  if (std::filesystem::is_directory(file, error)) return std::nullopt;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
   return std::string(std::istreambuf_iterator<char>(stream), {});

@@ -112,7 +112,7 @@ description::Joint jointOf(const urdf::Joint& from, const description::Robot& ro
   joint.origin = poseOf(from.parent_to_joint_origin_transform);
   if (joint.type == description::JointType::fixed) return joint;
   if (joint.type == description::JointType::spherical || joint.type == description::JointType::floating) return joint;
-  joint.axis = vectorOf(from.axis).normalized();
+  joint.axis = vectorOf(from.axis).stableNormalized();
   if (from.limits) {
     joint.effort = from.limits->effort;
     joint.velocity = from.limits->velocity;

@@ -31,6 +31,12 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A result that is no number, or that no digit can be trusted of; exit code 5.
+class NumericalError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 void addRun(CLI::App& program, Context& context);
 void addCheck(CLI::App& program, Context& context);
 void addCompare(CLI::App& program, Context& context);

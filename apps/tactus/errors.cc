@@ -43,6 +43,11 @@ int exitCode(const std::vector<dsl::Diagnostic>& diagnostics) {
   return exit_done;
 }
 
+std::string located(const description::Place& place, const std::string& message) {
+  if (place.line == 0) return message;
+  return place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) + ": " + message;
+}
+
 int reportErrors(const Context& context) {
   try {
     return context.action();
@@ -63,9 +68,9 @@ int reportErrors(const Context& context) {
   } catch (const control::TickError& error) {
     return say(context, exit_plugin, error.what());
   } catch (const dynamics::ModelError& error) {
-    const description::Place& place = error.place;
-    return say(context, exit_invalid_stack, place.file + ":" + std::to_string(place.line) + ":" +
-                                                std::to_string(place.column) + ": " + error.what());
+    return say(context, exit_invalid_stack, located(error.place, error.what()));
+  } catch (const NumericalError& error) {
+    return say(context, exit_numerical, error.what());
   } catch (const runtime::PlantError& error) {
     return say(context, exit_numerical, error.what());
   } catch (const runtime::FileError& error) {

@@ -58,6 +58,16 @@ std::string describeExtras(const CLI::App* command) {
   return message;
 }
 
+/// An option that ends with its "=": the parser would take the next word for its value, be it another option.
+std::string optionWithoutValue(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--") break;
+    if (word.starts_with("--") && word.find('=') == word.size() - 1) return word;
+  }
+  return "";
+}
+
 int runCommand(int argc, char** argv) {
   CLI::App app("Tactus: XML stacks of contact tasks, compiled into torque controllers");
   app.name("tactus");
@@ -79,6 +89,8 @@ int runCommand(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.allow_extras();
 
+  if (const std::string bare = optionWithoutValue(argc, argv); !bare.empty())
+    return usage(&app, "'" + bare + "' has no value");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {

@@ -15,6 +15,17 @@ size_t width(std::string_view text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
+double parseNumber(const std::string& word, const std::string& what) {
+  double value = 0;
+  const char* end = word.data() + word.size();
+  const auto [read, error] = std::from_chars(word.data(), end, value);
+  if (error == std::errc::result_out_of_range && read == end)
+    throw UsageError(what + ": '" + word + "' is too large or too small a number");
+  if (error != std::errc() || read != end) throw UsageError(what + ": '" + word + "' is not a number");
+  if (!std::isfinite(value)) throw UsageError(what + ": '" + word + "' is not a finite number");
+  return value;
+}
+
 }  // namespace
 
 std::string joined(const std::vector<std::string>& words, const std::string& separator) {
@@ -35,20 +46,19 @@ std::vector<std::string> split(std::string_view text, char separator) {
 
 std::vector<double> parseNumbers(const std::string& text, const std::string& what) {
   std::vector<double> numbers;
-  const char* at = text.data();
-  const char* end = at + text.size();
-  const auto separator = [](char c) { return c == ',' || c == ' '; };
-  while ((at = std::find_if_not(at, end, separator)) != end) {
-    const char* stop = std::find_if(at, end, separator);
-    double value = 0;
-    const auto [read, error] = std::from_chars(at, stop, value);
-    if (error != std::errc() || read != stop || !std::isfinite(value)) {
-      throw UsageError(what + ": '" + std::string(at, stop) + "' is not a finite number");
-    }
-    numbers.push_back(value);
-    at = stop;
+  if (text.find_first_not_of(' ') == std::string::npos) return numbers;
+  for (const std::string& part : split(text, ',')) {
+    const size_t before = numbers.size();
+    for (const std::string& word : split(part, ' '))
+      if (!word.empty()) numbers.push_back(parseNumber(word, what));
+    if (numbers.size() == before)
+      throw UsageError(what + ": number " + std::to_string(before + 1) + " is empty");
   }
   return numbers;
+}
+
+std::string counted(size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
 std::string rounded(double value, int digits) {

@@ -12,8 +12,11 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
 /// The parts of `text` between separators, empty ones kept.
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// Numbers separated by commas or blanks; `what` names them in the UsageError.
+/// Finite numbers separated by commas or blanks; `what` names them in the UsageError.
 std::vector<double> parseNumbers(const std::string& text, const std::string& what);
+
+/// "1 number", "2 numbers".
+std::string counted(size_t count, const std::string& one, const std::string& many);
 
 /// `value` with `digits` significant digits, never in another locale; "–" for NaN.
 std::string rounded(double value, int digits = 4);

@@ -80,6 +80,48 @@ void findDoubles(const std::vector<Named>& all, const std::string& kind, Report&
   }
 }
 
+std::vector<std::string> coordinateSuffixes(JointType type) {
+  switch (type) {
+    case JointType::fixed: return {};
+    case JointType::planar: return {".x", ".y", ".angle"};
+    case JointType::spherical: return {".wx", ".wy", ".wz"};
+    case JointType::floating: return {".x", ".y", ".z", ".wx", ".wy", ".wz"};
+    default: return {""};
+  }
+}
+
+std::vector<std::string> positionSuffixes(JointType type) {
+  switch (type) {
+    case JointType::spherical: return {".qw", ".qx", ".qy", ".qz"};
+    case JointType::floating: return {".x", ".y", ".z", ".qw", ".qx", ".qy", ".qz"};
+    default: return coordinateSuffixes(type);
+  }
+}
+
+std::vector<std::string> withSuffixes(const std::string& name, std::vector<std::string> suffixes) {
+  for (std::string& suffix : suffixes) suffix = name + suffix;
+  return suffixes;
+}
+
+/// A joint of several degrees of freedom adds suffixes to its name, and another joint may be called so.
+void findSharedCoordinates(const Robot& robot, Report& report) {
+  std::map<std::string, const Joint*> owners;
+  for (const Joint& joint : robot.joints) {
+    if (joint.mimic) continue;
+    std::vector<std::string> names = coordinateNames(joint);
+    for (std::string& name : positionNames(joint)) names.push_back(std::move(name));
+    for (const std::string& name : names) {
+      const Joint& owner = *owners.emplace(name, &joint).first->second;
+      if (owner.name == joint.name) continue;                      // its own, or told as a double
+      report.error(Fault::structure,
+                   "joints " + quoted(owner.name) + where(owner.place) + " and " + quoted(joint.name) +
+                       " both have a coordinate " + quoted(name) + ": give one of them another name",
+                   joint.place);
+      break;
+    }
+  }
+}
+
 bool isRotation(const Eigen::Matrix3d& R) {
   return (R.transpose() * R).isIdentity(unit_tolerance) && R.determinant() > 0;
 }
@@ -229,6 +271,7 @@ std::vector<int> examineStructure(const Robot& robot, Report& report) {
   }
   findDoubles(robot.links, "link", report);
   findDoubles(robot.joints, "joint", report);
+  findSharedCoordinates(robot, report);
   const std::optional<std::vector<int>> found = findCarriers(robot, report);
   if (!found) return {};
   const std::vector<int>& carriers = *found;
@@ -272,10 +315,57 @@ std::optional<Drive> driveOf(const Robot& robot, int j, Report& report) {
   return drive;
 }
 
+struct Range {
+  double lower, upper;
+  bool empty() const { return lower > upper; }
+};
+
+std::string text(const Range& range) { return rounded(range.lower) + " to " + rounded(range.upper); }
+
+/// Where a driver may stand so that what follows it keeps its own limits.
+Range driverRange(const Joint& driven, const Drive& drive) {
+  if (drive.ratio == 0) {                                          // it stands still: always, or never
+    const bool kept = driven.lower <= drive.offset && drive.offset <= driven.upper;
+    return kept ? Range{-description::infinity, description::infinity}
+                : Range{description::infinity, -description::infinity};
+  }
+  const double a = (driven.lower - drive.offset) / drive.ratio, b = (driven.upper - drive.offset) / drive.ratio;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// The limits of all that follows a driver leave it some range.
+void examineSharedLimits(const Robot& robot, const std::vector<Drive>& drives, Report& report) {
+  std::vector<Range> left;                                         // of every driver
+  for (const Joint& joint : robot.joints) left.push_back({joint.lower, joint.upper});
+  for (std::size_t j = 0; j < drives.size(); ++j) {
+    const Joint& driven = robot.joints[j];
+    const std::size_t driver = static_cast<std::size_t>(drives[j].driver);
+    if (driver == j || left[driver].empty() || driven.lower > driven.upper) continue;  // told elsewhere
+    const Range wanted = driverRange(driven, drives[j]);
+    const Range both{std::max(left[driver].lower, wanted.lower), std::min(left[driver].upper, wanted.upper)};
+    if (!both.empty()) {
+      left[driver] = both;
+    } else if (wanted.empty()) {
+      report.error(Fault::mimic,
+                   "joint " + quoted(driven.name) + " always stands at " + rounded(drives[j].offset) +
+                       ", outside its limits " + text(Range{driven.lower, driven.upper}) +
+                       ": change the limits or the mimic",
+                   driven.place);
+    } else {
+      report.error(Fault::mimic,
+                   "joint " + quoted(driven.name) + " keeps its limits only while " +
+                       quoted(robot.joints[driver].name) + ", which it follows, is in " + text(wanted) +
+                       ", but that may only be in " + text(left[driver]) + ": change the limits or the mimic",
+                   driven.place);
+    }
+  }
+}
+
 std::vector<Drive> examineMimics(const Robot& robot, Report& report) {
   std::vector<Drive> drives(robot.joints.size());
   for (int j = 0; j < static_cast<int>(robot.joints.size()); ++j)
     drives[j] = driveOf(robot, j, report).value_or(Drive{.driver = j});
+  examineSharedLimits(robot, drives, report);
   return drives;
 }
 
@@ -336,12 +426,53 @@ void warnOfNoMass(const RigidBodyInertia& inertia, const Link& carrier, Report& 
   }
 }
 
-/// Bodies that move, each with the link that its joint carries; then tensors of links on their own.
-void examineMasses(const Robot& robot, MassPolicy policy, Report& report) {
-  const Model model(robot, MassPolicy::kinematics_only);
+bool isSound(const Link& link) {
+  Report report;
+  examineLink(link, report);
+  return !report.hasErrors();
+}
+
+bool isSound(const Joint& joint) {
+  Report report;
+  examineJoint(joint, report);
+  return !report.hasErrors();
+}
+
+/// A robot whose bodies can be looked at: what has no part in inertia is left out, what is wrong is made harmless.
+/// `doubtful` are links that are then not what was written.
+Robot forInertias(const Robot& robot, std::vector<bool>& doubtful) {
+  Robot result = robot;
+  doubtful.assign(robot.links.size(), false);
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    if (isSound(robot.links[i])) continue;
+    result.links[i].has_inertial = false;
+    doubtful[i] = true;
+  }
+  for (Joint& joint : result.joints) {
+    Joint plain{.name = joint.name, .type = joint.type, .parent = joint.parent, .child = joint.child};
+    Joint kept = plain;
+    kept.origin = joint.origin;
+    kept.axis = joint.axis;
+    kept.rotor_inertia = joint.rotor_inertia;
+    kept.gear_ratio = joint.gear_ratio;
+    if (!isSound(kept)) doubtful[static_cast<std::size_t>(joint.child)] = true;
+    joint = isSound(kept) ? kept : plain;
+  }
+  return result;
+}
+
+/// Bodies that move, each with the link that its joint carries.  Returns links that dynamics cannot use.
+std::set<const Link*> examineBodies(const Robot& robot, MassPolicy policy, Report& report) {
+  std::vector<bool> doubtful;
+  const Model model(forInertias(robot, doubtful), MassPolicy::kinematics_only);
+  std::set<int> doubtful_bodies;
+  for (std::size_t i = 0; i < doubtful.size(); ++i)
+    if (doubtful[i]) doubtful_bodies.insert(model.frames()[i].body);
   std::set<const Link*> refused;
   for (const Model::Joint& joint : model.joints()) {
-    const RigidBodyInertia& inertia = model.bodies()[joint.first_body + joint.body_count - 1].inertia;
+    const int body = joint.first_body + joint.body_count - 1;
+    if (doubtful_bodies.contains(body)) continue;
+    const RigidBodyInertia& inertia = model.bodies()[body].inertia;
     const Link& carrier = robot.links[robot.joints[robot.jointIndex(joint.name)].child];
     if (policy == MassPolicy::kinematics_only) {
       warnOfNoMass(inertia, carrier, report);
@@ -349,8 +480,14 @@ void examineMasses(const Robot& robot, MassPolicy policy, Report& report) {
       refused.insert(&carrier);
     }
   }
+  return refused;
+}
+
+/// Tensors of links on their own.  A link of no mass may have no tensor either.
+void warnOfTensors(const Robot& robot, const std::set<const Link*>& refused, Report& report) {
   for (const Link& link : robot.links) {
-    if (!weighs(link) || refused.contains(&link)) continue;
+    if (!link.has_inertial || !isSound(link) || refused.contains(&link)) continue;
+    if (link.mass == 0 && link.inertia.isZero(0)) continue;
     if (judge(principalMoments(link.inertia)) == Moments::possible) continue;
     report.warning(Fault::inertia,
                    "link " + quoted(link.name) +
@@ -391,15 +528,24 @@ void warnOfForgottenCentres(const Robot& robot, Report& report) {
 
 }  // namespace
 
+std::vector<std::string> coordinateNames(const Joint& joint) {
+  return withSuffixes(joint.name, coordinateSuffixes(joint.type));
+}
+
+std::vector<std::string> positionNames(const Joint& joint) {
+  return withSuffixes(joint.name, positionSuffixes(joint.type));
+}
+
 std::vector<RobotFinding> validate(const Robot& robot, MassPolicy policy) {
   Report report;
   examineStructure(robot, report);
+  const bool is_tree = !report.hasErrors();
   examineNumbers(robot, report);
   examineMimics(robot, report);
-  if (!report.hasErrors()) {                                       // else there is no tree of bodies to look at
-    examineMasses(robot, policy, report);
-    warnOfForgottenCentres(robot, report);
-  }
+  std::set<const Link*> refused;
+  if (is_tree) refused = examineBodies(robot, policy, report);
+  warnOfTensors(robot, refused, report);
+  if (is_tree) warnOfForgottenCentres(robot, report);
   return report.take();
 }
 

@@ -11,7 +11,8 @@ namespace tactus::dynamics {
 /// Takes no memory after construction.
 class DynamicsDerivatives {
  public:
-  explicit DynamicsDerivatives(const Model& model);
+  explicit DynamicsDerivatives(const Model& model);                ///< the model must outlive it
+  explicit DynamicsDerivatives(const Model&&) = delete;
 
   /// Of inverse dynamics τ(q, q̇, q̈): fills torqueByPosition, torqueByVelocity and torque.
   void computeInverse(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& qdd,

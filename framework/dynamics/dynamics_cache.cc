@@ -2,6 +2,7 @@
 
 #include "framework/dynamics/cholesky.h"
 #include "framework/dynamics/crba.h"
+#include "framework/dynamics/require_size.h"
 #include "framework/dynamics/rnea.h"
 
 namespace tactus::dynamics {
@@ -20,6 +21,8 @@ DynamicsCache::DynamicsCache(const Model& model, const Eigen::Vector3d& gravity_
 }
 
 void DynamicsCache::update(const Eigen::VectorXd& q, const Eigen::VectorXd& qd) {
+  requireSize("q", q, model_->positionCount());
+  requireSize("qd", qd, model_->dof());
   q_ = q;
   qd_ = qd;
   forwardKinematics(*model_, q_, workspace_);

@@ -13,8 +13,9 @@ namespace tactus::dynamics {
 class DynamicsCache {
  public:
   explicit DynamicsCache(const Model& model, const Eigen::Vector3d& gravity_W = {0, 0, -9.81});
+  explicit DynamicsCache(const Model&&, const Eigen::Vector3d& = {0, 0, -9.81}) = delete;  ///< would outlive it
 
-  /// Poses, velocities, M, its Cholesky factor, b + g and g.
+  /// Poses, velocities, M, its Cholesky factor, b + g and g.  Throws std::invalid_argument for wrong sizes.
   void update(const Eigen::VectorXd& q, const Eigen::VectorXd& qd);
 
   const Model& model() const { return *model_; }

@@ -10,6 +10,7 @@ namespace tactus::dynamics {
 class ExternalForces {
  public:
   explicit ExternalForces(const Model& model) : model_(&model), forces_(model.bodyCount(), ForceVector::Zero()) {}
+  explicit ExternalForces(const Model&&) = delete;                 ///< would outlive it
 
   void clear() { forces_.assign(forces_.size(), ForceVector::Zero()); }
   /// A force on the point of `frame` now at point_W, N, world axes.

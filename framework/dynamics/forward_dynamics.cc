@@ -2,6 +2,7 @@
 
 #include "framework/dynamics/aba.h"
 #include "framework/dynamics/crba.h"
+#include "framework/dynamics/require_size.h"
 #include "framework/dynamics/rnea.h"
 
 namespace tactus::dynamics {
@@ -14,6 +15,10 @@ ForwardDynamics::ForwardDynamics(const Model& model)
 void ForwardDynamics::compute(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& tau,
                               const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& qdd,
                               const ExternalForces* external) {
+  requireSize("q", q, model_->positionCount());
+  requireSize("qd", qd, model_->dof());
+  requireSize("tau", tau, model_->dof());
+  qdd.resize(model_->dof());
   if (!model_->coupled()) return aba(*model_, q, qd, tau, gravity_W, workspace, qdd, external);
   nonlinearEffects(*model_, q, qd, gravity_W, workspace, qdd, external);
   qdd = tau - qdd;

@@ -9,10 +9,11 @@ namespace tactus::dynamics {
 /// q̈ from τ, of any model.  Takes no memory after construction.
 class ForwardDynamics {
  public:
-  explicit ForwardDynamics(const Model& model);
+  explicit ForwardDynamics(const Model& model);                    ///< the model must outlive it
+  explicit ForwardDynamics(const Model&&) = delete;
 
   /// q̈ = M⁻¹ (τ − b − g + Σ Jᵀ f): by the articulated-body algorithm where no joint drives another one, else by the
-  /// factor of M.
+  /// factor of M.  Gives q̈ its size; throws std::invalid_argument for wrong sizes of what comes in.
   void compute(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& tau,
                const Eigen::Vector3d& gravity_W, Workspace& workspace, Eigen::VectorXd& qdd,
                const ExternalForces* external = nullptr);

@@ -58,23 +58,6 @@ std::vector<Step> steps(const description::Joint& joint) {
   return {};
 }
 
-std::vector<std::string> coordinateSuffixes(JointType type) {
-  switch (type) {
-    case JointType::planar: return {".x", ".y", ".angle"};
-    case JointType::spherical: return {".wx", ".wy", ".wz"};
-    case JointType::floating: return {".x", ".y", ".z", ".wx", ".wy", ".wz"};
-    default: return {""};
-  }
-}
-
-std::vector<std::string> positionSuffixes(JointType type) {
-  switch (type) {
-    case JointType::spherical: return {".qw", ".qx", ".qy", ".qz"};
-    case JointType::floating: return {".x", ".y", ".z", ".qw", ".qx", ".qy", ".qz"};
-    default: return coordinateSuffixes(type);
-  }
-}
-
 void append(Eigen::VectorXd& values, Eigen::Index count, double value) {
   values.conservativeResize(values.size() + count);
   values.tail(count).setConstant(value);
@@ -140,8 +123,8 @@ void Model::addCoordinates(const description::Joint& joint) {
   added.position_count = description::positionCount(joint.type);
   added.coordinate = dof();
   added.coordinate_count = description::velocityCount(joint.type);
-  for (const std::string& suffix : positionSuffixes(joint.type)) position_names_.push_back(joint.name + suffix);
-  for (const std::string& suffix : coordinateSuffixes(joint.type)) coordinate_names_.push_back(joint.name + suffix);
+  for (std::string& name : dynamics::positionNames(joint)) position_names_.push_back(std::move(name));
+  for (std::string& name : dynamics::coordinateNames(joint)) coordinate_names_.push_back(std::move(name));
   const bool limited = added.coordinate_count == 1;
   append(lower_, added.coordinate_count, limited ? joint.lower : -description::infinity);
   append(upper_, added.coordinate_count, limited ? joint.upper : description::infinity);

@@ -20,6 +20,30 @@ TEST(Text, NumbersBetweenCommasAndBlanks) {
   }
 }
 
+TEST(Text, WhatIsNoListOfNumbersIsTold) {
+  const auto said = [](const char* text) {
+    try {
+      parseNumbers(text, "--q");
+      return std::string("nothing");
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(said("1,2,,0"), "--q: number 3 is empty");
+  EXPECT_EQ(said("1,2,"), "--q: number 3 is empty");
+  EXPECT_EQ(said(" ,1"), "--q: number 1 is empty");
+  EXPECT_EQ(said("1 2, 3"), "nothing");
+  EXPECT_EQ(said("1,3x"), "--q: '3x' is not a number");
+  EXPECT_EQ(said("inf"), "--q: 'inf' is not a finite number");
+  EXPECT_EQ(said("1e999"), "--q: '1e999' is too large or too small a number");
+}
+
+TEST(Text, Counted) {
+  EXPECT_EQ(counted(1, "number", "numbers"), "1 number");
+  EXPECT_EQ(counted(2, "number", "numbers"), "2 numbers");
+  EXPECT_EQ(counted(0, "number", "numbers"), "0 numbers");
+}
+
 TEST(Text, RoundedToSignificantDigits) {
   EXPECT_EQ(rounded(3.14159265), "3.142");
   EXPECT_EQ(rounded(0.000123456), "0.0001235");

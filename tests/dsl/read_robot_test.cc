@@ -359,17 +359,65 @@ TEST(ReadRobot, NamesAndReferences) {
               ElementsAre("13:43 E020 the name 'arm' is that of a link or of a group already"));
 }
 
+TEST(ReadRobot, AnEmptyNameIsToldAtItsPlace) {
+  EXPECT_THAT(findings(changed("<link name=\"base\"/>", "<link name=\"\"/>")),
+              testing::Contains("2:15 E014 the name of a link must not be empty"));
+  EXPECT_THAT(findings(changed("joint name=\"j\"", "joint name=\"\"")),
+              testing::Contains("7:16 E014 the name of a joint must not be empty"));
+}
+
+TEST(ReadRobot, WhatNothingReadsIsTold) {
+  EXPECT_THAT(findings(changed("<axis xyz=\"0 0 2\"/>", "<axes xyz=\"0 0 2\"/>")),
+              ElementsAre("9:38 W008 nothing reads the <axes> of <joint name=\"j\"> [axis]"));
+  EXPECT_THAT(findings(changed("origin xyz", "origin xzy")),
+              ElementsAre("9:13 W008 nothing reads the attribute 'xzy' of <origin> [xyz]"));
+  EXPECT_THAT(findings(changed("<dynamics damping", "<dynamic damping")),
+              ElementsAre("11:5 W008 nothing reads the <dynamic> of <joint name=\"j\"> [dynamics]"));
+  EXPECT_THAT(findings(changed("limit lower", "limit lowr")),
+              ElementsAre("10:12 W008 nothing reads the attribute 'lowr' of <limit> [lower]"));
+  EXPECT_THAT(findings(changed("<link name=\"base\"/>",
+                               "<link name=\"base\"><inertal/></link><lnk/>")),
+              ElementsAre("2:38 W008 nothing reads the <lnk> of <robot name=\"r\"> [link]",
+                          "2:21 W008 nothing reads the <inertal> of <link name=\"base\"> [inertial]"));
+}
+
+TEST(ReadRobot, WhatOtherProgramsReadIsNot) {
+  EXPECT_THAT(findings(changed("<link name=\"base\"/>",
+                               "<gazebo/><frame link=\"base\"/><link name=\"base\"><self_collision_checking/>"
+                               "<drake:joint/></link>")),
+              testing::IsEmpty());
+  EXPECT_THAT(findings(changed("<limit ", "<limit drake:acceleration=\"3\" ")), testing::IsEmpty());
+}
+
+TEST(ReadRobot, WhatStandsTwiceIsRefused) {
+  const std::string inertial = "<inertial><mass value=\"1\"/>";
+  EXPECT_THAT(findings(changed(inertial, inertial + "<mass value=\"2\"/>")),
+              ElementsAre("4:32 E017 <inertial> has a second <mass>: it may have one, remove the other"));
+  EXPECT_THAT(findings(changed("    <collision>", "    <inertial/><collision>")),
+              testing::Contains("5:5 E017 <link name=\"arm\"> has a second <inertial>: it may have one, remove the "
+                                "other"));
+  for (const std::string part : {"<limit effort=\"1\" velocity=\"1\"/>", "<parent link=\"base\"/>"})
+    EXPECT_THAT(findings(changed("    <dynamics", "    " + part + "<dynamics")),
+                ElementsAre("11:5 E017 <joint name=\"j\"> has a second " + part.substr(0, part.find(' ')) +
+                            ">: it may have one, remove the other"));
+}
+
 TEST(ReadRobot, TheTree) {
   EXPECT_THAT(findings(changed("<link name=\"base\"/>", "<link name=\"base\"/><link name=\"lost\"/>")),
               ElementsAre("2:22 E081 link 'lost' has no parent, but 'base' is the root already"));
   EXPECT_THAT(findings(changed("parent link=\"base\"", "parent link=\"arm\"")),
-              ElementsAre("3:3 E082 link 'arm' is part of a closed loop of joints"));
+              ElementsAre("8:38 E082 joint 'j' joins link 'arm' to itself"));
   const std::string second = "<joint name='k' type='fixed'><parent link='arm'/><child link='base'/></joint><tactus>";
   EXPECT_THAT(findings(changed("<tactus>", second)),
               ElementsAre("1:1 E080 no link is the root: every one is the child of a joint"));
   const std::string twice = "<joint name='k' type='fixed'><parent link='base'/><child link='arm'/></joint><tactus>";
   EXPECT_THAT(findings(changed("<tactus>", twice)),
-              ElementsAre("13:66 E082 link 'arm' is the child of another joint already"));
+              ElementsAre("13:66 E082 link 'arm' is the child of joint 'j' already"));
+  const std::string circle =
+      "<link name='a'/><link name='b'/><joint name='up' type='fixed'><parent link='a'/><child link='b'/></joint>"
+      "<joint name='down' type='fixed'><parent link='b'/><child link='a'/></joint><tactus>";
+  EXPECT_THAT(findings(changed("<tactus>", circle)),
+              ElementsAre("13:3 E082 link 'a' hangs in a closed loop of joints: 'up', 'down'"));
 }
 
 TEST(ReadRobot, JointTypesAndLimits) {
@@ -378,6 +426,16 @@ TEST(ReadRobot, JointTypesAndLimits) {
                           "prismatic, fixed, planar, spherical or floating [revolute]"));
   EXPECT_THAT(findings(changed("lower=\"-1\"", "lower=\"2\"")),
               ElementsAre("10:19 E084 the lower limit 2 lies above the upper limit 1"));
+  EXPECT_THAT(findings(changed("lower=\"-1\" upper=\"1\"", "lower=\"0.5\"")),
+              ElementsAre("10:19 E084 the lower limit 0.5 lies above the upper limit, which is not given and therefore "
+                          "0"));
+  EXPECT_THAT(findings(changed("lower=\"-1\" upper=\"1\"", "upper=\"-0.5\"")),
+              ElementsAre("10:19 E084 the upper limit -0.5 lies below the lower limit, which is not given and "
+                          "therefore 0"));
+  std::string continuous = changed("revolute", "continuous");
+  continuous.replace(continuous.find(" upper=\"1\""), 10, "").replace(continuous.find("lower=\"-1\""), 10,
+                                                                        "lower=\"1\"");
+  EXPECT_THAT(findings(continuous), testing::IsEmpty());
   EXPECT_THAT(findings(changed("<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>", "")),
               ElementsAre("7:3 E016 <joint> needs a <limit>"));
   EXPECT_THAT(findings(changed(" effort=\"10\"", "")), ElementsAre("10:5 E013 <limit> needs the attribute 'effort'"));
@@ -504,6 +562,19 @@ TEST(ReadRobot, WhatCannotFollowOrBeFollowed) {
                                                   ": only one that is revolute, continuous or prismatic can be "
                                                   "followed"));
   }
+}
+
+TEST(ReadRobot, LimitsThatCannotBothHoldAreToldAtTheMimic) {
+  EXPECT_THAT(findings(following("<limit lower=\"3\" upper=\"4\" effort=\"1\" velocity=\"1\"/>\n"
+                                 "<mimic joint=\"j\" multiplier=\"2\" offset=\"0.5\"/>", "revolute")),
+              ElementsAre("16:1 E086 joint 'k' keeps its limits only while 'j', which it follows, is in 1.25 to 1.75, "
+                          "but that may only be in -1 to 1: change the limits or the mimic"));
+}
+
+TEST(ReadRobot, AnAxisOfAnyLength) {
+  for (const char* axis : {"0 0 1e200", "0 0 1e-200", "0 0 5e-324"})
+    EXPECT_EQ(joint(readCleanly(writeFile("robot.urdf", changed("0 0 2", axis))), "j").axis, Eigen::Vector3d::UnitZ())
+        << axis;
 }
 
 TEST(ReadRobot, AContinuousJointHasNoLimits) {

@@ -202,6 +202,51 @@ TEST(CheckRobot, Mimics) {
   expectError(follow(2), "joint 'elbow' mimics joint 'wrist': both must be revolute, continuous or prismatic", 21);
 }
 
+TEST(CheckRobot, ADriverMustBeAbleToKeepTheLimitsOfWhatFollowsIt) {
+  const auto limited = [](double ratio, double offset, double lower, double upper) {
+    return [=](Robot& robot) {
+      robot.joints[0].lower = -1;
+      robot.joints[0].upper = 1;
+      robot.joints[1].mimic = description::Mimic{0, ratio, offset};
+      robot.joints[1].lower = lower;
+      robot.joints[1].upper = upper;
+    };
+  };
+  expectError(limited(-2, 0.5, 3, 4.5),
+              "joint 'elbow' keeps its limits only while 'shoulder', which it follows, is in -2 to -1.25, but that may "
+              "only be in -1 to 1: change the limits or the mimic",
+              21);
+  expectError(limited(0, 0.5, 1, 2),
+              "joint 'elbow' always stands at 0.5, outside its limits 1 to 2: change the limits or the mimic", 21);
+  for (const auto& sound : {limited(-2, 0.5, 2.5, 3), limited(0, 0.5, 0.5, 1)}) {
+    Robot robot = soundRobot();
+    sound(robot);
+    EXPECT_THAT(findings(robot), IsEmpty());
+    const Model model(robot);
+    EXPECT_LE(model.lower()[0], model.upper()[0]);
+  }
+}
+
+TEST(CheckRobot, NamesOfCoordinatesAreUniqueToo) {
+  expectError(
+      [](Robot& robot) {
+        robot.joints[0].name = "f";
+        robot.joints[0].type = JointType::planar;
+        robot.joints[1].name = "f.x";
+      },
+      "joints 'f' (line 20) and 'f.x' both have a coordinate 'f.x': give one of them another name", 21);
+  expectError(
+      [](Robot& robot) {
+        robot.joints[0].name = "f.qw";
+        robot.joints[1].name = "f";
+        robot.joints[1].type = JointType::spherical;
+      },
+      "joints 'f.qw' (line 20) and 'f' both have a coordinate 'f.qw': give one of them another name", 21);
+  Robot robot = soundRobot();
+  robot.joints[0].name = "wrist.x";                                // a fixed joint has no coordinates
+  EXPECT_THAT(findings(robot), IsEmpty());
+}
+
 TEST(CheckRobot, RotorsAndGears) {
   expectError([](Robot& robot) { robot.joints[0].gear_ratio = 0; },
               "joint 'shoulder': its gear ratio is 0; it must be a number other than 0", 20);
@@ -230,6 +275,42 @@ TEST(CheckRobot, EveryFaultIsFoundAtOnce) {
                           "error 20 joint 'shoulder': its damping is -1; it must be a number of at least 0",
                           "error 21 joint 'elbow' mimics itself, directly or through others: one of them must move "
                           "freely"));
+}
+
+TEST(CheckRobot, InertiasAreJudgedBesideOtherFaults) {
+  const std::string bad_moments =
+      "no body can have its inertia (principal moments about its centre of mass, with all that is fixed to it and its "
+      "rotor: 0.02, 0.02, 0.05 kg m²): the greatest moment must not exceed the sum of the two others";
+  const std::string limits = "error 21 joint 'elbow': its lower limit 2 lies above its upper limit 1";
+  Robot robot = soundRobot();
+  robot.links[1].inertia = Eigen::Vector3d(0.02, 0.02, 0.05).asDiagonal();
+  robot.joints[1].lower = 2;
+  robot.joints[1].upper = 1;
+  robot.joints[1].mimic = description::Mimic{1, 1, 0};
+  EXPECT_THAT(findings(robot),
+              ElementsAre(limits,
+                          "error 21 joint 'elbow' mimics itself, directly or through others: one of them must move "
+                          "freely",
+                          "error 11 link 'upper': " + bad_moments));
+  robot.links[2].has_inertial = false;
+  robot.joints[1].mimic.reset();
+  robot.links[3].mass = nan;                                       // the body of "lower" and "hand" is not judged
+  EXPECT_THAT(findings(robot), ElementsAre("error 13 link 'hand': its mass is not a finite number", limits,
+                                           "error 11 link 'upper': " + bad_moments));
+  robot.links[3].name = "upper";                                   // no tree: links on their own
+  EXPECT_THAT(findings(robot),
+              ::testing::Contains("warning 11 link 'upper' has an inertia tensor that no rigid body has: its principal "
+                                  "moments must be positive, and each at most the sum of the two others"));
+}
+
+TEST(CheckRobot, ATensorWithoutMassOnTheBase) {
+  Robot robot = soundRobot();
+  robot.links[0].has_inertial = true;
+  EXPECT_THAT(findings(robot), IsEmpty());                         // nothing at all is nothing
+  robot.links[0].inertia = Eigen::Vector3d(0.02, 0.02, 0.05).asDiagonal();
+  EXPECT_THAT(findings(robot),
+              ElementsAre("warning 10 link 'base' has an inertia tensor that no rigid body has: its principal moments "
+                          "must be positive, and each at most the sum of the two others"));
 }
 
 TEST(CheckRobot, EveryRootAndEveryLinkInALoopIsFound) {

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <string>
+#include <type_traits>
+
 #include "framework/dynamics/crba.h"
+#include "framework/dynamics/forward_dynamics.h"
 #include "framework/dynamics/rnea.h"
 #include "tests/dynamics/allocation_count.h"
 #include "tests/dynamics/random_state.h"
@@ -11,6 +16,36 @@ namespace tactus::dynamics {
 namespace {
 
 using test_robots::Random;
+
+// Neither outlives its model by accident.
+static_assert(!std::is_constructible_v<DynamicsCache, Model>);
+static_assert(!std::is_constructible_v<ForwardDynamics, Model>);
+static_assert(std::is_constructible_v<DynamicsCache, const Model&>);
+
+std::string refusal(const std::function<void()>& call) {
+  try {
+    call();
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+TEST(DynamicsCache, WrongSizesAreRefused) {
+  const Model model(test_robots::lwr());
+  DynamicsCache cache(model);
+  const Eigen::VectorXd three = Eigen::VectorXd::Zero(3), seven = Eigen::VectorXd::Zero(7);
+  EXPECT_EQ(refusal([&] { cache.update(three, seven); }), "q has 3 numbers, the model takes 7");
+  EXPECT_EQ(refusal([&] { cache.update(seven, three); }), "qd has 3 numbers, the model takes 7");
+  EXPECT_EQ(cache.q(), seven);
+  Workspace workspace(model);
+  ForwardDynamics forward(model);
+  Eigen::VectorXd qdd;
+  EXPECT_EQ(refusal([&] { forward.compute(seven, seven, three, {0, 0, -9.81}, workspace, qdd); }),
+            "tau has 3 numbers, the model takes 7");
+  forward.compute(seven, seven, seven, {0, 0, -9.81}, workspace, qdd);
+  EXPECT_EQ(qdd.size(), 7);
+}
 
 TEST(DynamicsCache, AgreesWithTheFreeFunctions) {
   onRandomStates(81, [](RandomState& state, Random& random) {

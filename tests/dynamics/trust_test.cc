@@ -138,7 +138,7 @@ TEST(Trust, AFarBaseCostsKnownDigits) {
   Eigen::MatrixXd M(dof, dof), M_far(dof, dof);
   state.q.head<3>().setZero();
   crba(state.model, state.q, state.workspace, M);
-  for (const double distance : {1.0, 10.0, 100.0}) {
+  for (const double distance : {1.0, 10.0, 100.0, 1e3, 1e4}) {
     Eigen::VectorXd far = state.q;
     far[0] = distance;
     crba(state.model, far, state.workspace, M_far);
