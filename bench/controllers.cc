@@ -208,9 +208,9 @@ Figure measureHierarchySolve(int contacts, double target_us, int samples) {
     touch.jacobian = sequence.contactRows(k);
     touch.force.setConstant(0.5);
     hand.jacobian = sequence.handRows(k);
-    for (int i = 0; i < 6; ++i) hand.acceleration[i] = 20 * sequence.wave(k, i + 3);
+    for (int i = 0; i < 6; ++i) hand.acceleration[i] = 30 * sequence.wave(k, i + 3);
     posture.jacobian.setIdentity();
-    for (int i = 0; i < n; ++i) posture.acceleration[i] = 25 * sequence.wave(k, i + 9) + 10 * sequence.wave(3 * k, i);
+    for (int i = 0; i < n; ++i) posture.acceleration[i] = 45 * sequence.wave(k, i + 9) + 20 * sequence.wave(3 * k, i);
     hand.has_acceleration = posture.has_acceleration = true;
     int priority = 1;
     for (control::TickTask* task : {&touch, &hand, &posture}) {

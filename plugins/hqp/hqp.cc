@@ -484,7 +484,8 @@ void Hqp::Solver::followBase() {
 // The level's equality rows stay as they are; its inequality rows become constraints at where they are.
 void Hqp::Solver::holdLevel(int level, TickSolution& solution) {
   const int equalities = whitened_.equalityRows(level);
-  if (open_rows_ > equalities) {                                   // the open stage has inequality rows too, which may sink
+  const bool open_stage_stays = open_rows_ == equalities;
+  if (!open_stage_stays) {                                         // it has inequality rows too, which may sink
     restoreChain(stages_above_);
     open_rows_ = equalities;
     open() = whitened_.equalities(level);
@@ -492,7 +493,13 @@ void Hqp::Solver::holdLevel(int level, TickSolution& solution) {
     chain_.hold(open());
   }
   control::LevelRanks::write(chain_.lastStage(), level, dof_, solution);
-  if (count_ > 0) chain_.advance(stages() - 1, advanced_.leftCols(count_));
+  if (level + 1 == whitened_.levelCount()) return;
+  if (count_ > 0 && open_stage_stays) {
+    chain_.fade(stages() - 1, turned_.leftCols(count_));
+    advanced_.swap(turned_);
+  } else if (count_ > 0) {
+    chain_.advance(stages() - 1, advanced_.leftCols(count_));
+  }
   // What lower levels cannot reach of the point; a faded direction by its share.
   column_.col(0) = y_;
   chain_.advance(column_);
