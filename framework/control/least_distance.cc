@@ -62,8 +62,6 @@ LeastDistance::Outcome LeastDistance::solve(const Rows& rows, const Bounds& boun
     guessed = false;
     contradiction |= outcome == Outcome::infeasible;
     if (outcome == Outcome::solved) {
-      if (active_count_ == 0) break;                               // nothing has moved since the last look
-      updateProducts(rows);
       if (largestViolation() <= 10 * tolerance * size_) break;
       outcome = Outcome::exhausted;
     }
@@ -81,39 +79,49 @@ LeastDistance::Outcome LeastDistance::attempt(const Rows& rows, const Vector& c,
   const int last_step = steps_ + steps_per_row * (m_ + 1);
   updateProducts(rows);
   size_ = c.norm() + std::max(0.0, largestViolation());
-  if (bounds_.lower && holdEqualities(rows, c) != Outcome::solved) return Outcome::infeasible;
-  if (guessed) holdGuess(rows, c);
+  const bool dependent = bounds_.lower && holdEqualities(rows);
+  if (guessed) holdGuess(rows);
+  settle(c);
+  if (dependent && !keepsDependentEqualities(rows)) return Outcome::infeasible;
   if (active_count_ > 0) updateProducts(rows);
   for (int row = mostViolated(); row >= 0; row = mostViolated()) {
     if (steps_ >= last_step) return Outcome::exhausted;
     const int side = products_[row] > bounds_.upper[row] ? 1 : -1;
+    settled_ = false;
     const Outcome outcome = addRow(rows, row, side, release);
     if (outcome != Outcome::solved) return outcome;
     updateProducts(rows);
   }
+  if (settled_) return Outcome::solved;
   recompute(c);
+  updateProducts(rows);
   return Outcome::solved;
 }
 
-LeastDistance::Outcome LeastDistance::holdEqualities(const Rows& rows, const Vector& c) {
+// True when some row depends on others.
+bool LeastDistance::holdEqualities(const Rows& rows) {
+  bool any_dependent = false;
   for (int j = 0; j < m_; ++j) {
     if (!isEquality(j)) continue;
     const double free_part = decompose(rows, j, 1);
     const bool dependent = active_count_ == n_ || free_part < dependence_tolerance_ * dependence_tolerance_;
     if (!dependent) append(j, 1, free_part);
     state_[j] = dependent ? row_set_aside : row_equal;
+    any_dependent |= dependent;
   }
-  if (active_count_ == 0) return Outcome::solved;
-  recompute(c);
+  return any_dependent;
+}
+
+bool LeastDistance::keepsDependentEqualities(const Rows& rows) const {
   for (int j = 0; j < m_; ++j) {
     if (!isEquality(j) || state_[j] == row_equal) continue;
     const double off = std::abs(rows.col(j).dot(x_.head(n_)) - bounds_.upper[j]);
-    if (off > largest_change * dependence_tolerance_ * (size_ + std::abs(bounds_.upper[j]))) return Outcome::infeasible;
+    if (off > largest_change * dependence_tolerance_ * (size_ + std::abs(bounds_.upper[j]))) return false;
   }
-  return Outcome::solved;
+  return true;
 }
 
-void LeastDistance::holdGuess(const Rows& rows, const Vector& c) {
+void LeastDistance::holdGuess(const Rows& rows) {
   for (int i = 0; i < guess_count_ && active_count_ < n_; ++i) {
     const int row = std::abs(guess_[i]) - 1;
     const int side = guess_[i] > 0 ? 1 : -1;
@@ -122,7 +130,12 @@ void LeastDistance::holdGuess(const Rows& rows, const Vector& c) {
     const double free_part = decompose(rows, row, side);
     if (free_part > coarser_tolerances[1]) append(row, side, free_part);
   }
-  while (true) {
+}
+
+// The point of the rows held so far; those whose multiplier has the wrong sign are let go, the worst first.
+void LeastDistance::settle(const Vector& c) {
+  settled_ = true;
+  while (active_count_ > 0) {
     recompute(c);
     int worst = -1;
     double least = 0;
@@ -136,6 +149,7 @@ void LeastDistance::holdGuess(const Rows& rows, const Vector& c) {
     remove(worst);
     ++steps_;
   }
+  x_.head(n_) = c;
 }
 
 void LeastDistance::updateProducts(const Rows& rows) {

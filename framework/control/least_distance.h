@@ -59,8 +59,10 @@ class LeastDistance {
 
   Outcome solve(const Rows& rows, const Bounds& bounds, const Vector& c, bool release);
   Outcome attempt(const Rows& rows, const Vector& c, bool release, bool guessed);
-  Outcome holdEqualities(const Rows& rows, const Vector& c);
-  void holdGuess(const Rows& rows, const Vector& c);
+  bool holdEqualities(const Rows& rows);
+  bool keepsDependentEqualities(const Rows& rows) const;
+  void holdGuess(const Rows& rows);
+  void settle(const Vector& c);
   double bound(int row, int side) const { return side > 0 ? bounds_.upper[row] : bounds_.lower[row]; }
   bool isEquality(int row) const { return bounds_.lower && bounds_.lower[row] == bounds_.upper[row]; }
   double violation(int row) const;                                 // of the last products; negative inside the bounds
@@ -83,6 +85,7 @@ class LeastDistance {
   int released_ = 0;
   int steps_ = 0;
   int step_limit_;
+  bool settled_ = false;                                           // x_ and the products belong to the active rows
   int guess_count_ = 0;
   Eigen::VectorXi guess_;                                          // row + 1, negative for a lower bound
   Eigen::VectorXi active_;
