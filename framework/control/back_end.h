@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <limits>
 #include <string>
 #include <vector>
@@ -25,6 +26,13 @@ struct Abilities {
 struct Deadline {
   int iterations = std::numeric_limits<int>::max();                ///< of its solver, so that runs repeat
   double seconds = std::numeric_limits<double>::infinity();        ///< wall clock; runs then need not repeat
+
+  /// The moment at which a solve that begins now must end.
+  std::chrono::steady_clock::time_point end() const {
+    using Clock = std::chrono::steady_clock;
+    if (!(seconds < 1e6)) return Clock::time_point::max();
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
 };
 
 /// What a back end carries from one tick to the next, as plain numbers of its own.

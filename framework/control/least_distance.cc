@@ -53,6 +53,7 @@ LeastDistance::Outcome LeastDistance::solve(const Rows& rows, const Bounds& boun
   m_ = static_cast<int>(rows.cols());
   bounds_ = bounds;
   steps_ = 0;
+  late_ = false;
   Outcome outcome = Outcome::exhausted;
   bool guessed = guess_count_ > 0;
   bool contradiction = false;
@@ -65,7 +66,7 @@ LeastDistance::Outcome LeastDistance::solve(const Rows& rows, const Bounds& boun
       if (largestViolation() <= 10 * tolerance * size_) break;
       outcome = Outcome::exhausted;
     }
-    if (steps_ >= step_limit_) break;
+    if (late_) break;
   }
   forgetGuess();
   return outcome == Outcome::exhausted && contradiction ? Outcome::infeasible : outcome;
@@ -169,6 +170,11 @@ double LeastDistance::largestViolation() const {
   return largest;
 }
 
+bool LeastDistance::outOfTime() {
+  late_ = late_ || steps_ >= step_limit_ || (end_ != TimePoint::max() && std::chrono::steady_clock::now() >= end_);
+  return late_;
+}
+
 // The row furthest beyond its bound by the products of the last point, or -1.
 int LeastDistance::mostViolated() const {
   int worst = -1;
@@ -249,7 +255,8 @@ void LeastDistance::remove(int position) {
 LeastDistance::Outcome LeastDistance::addRow(const Rows& rows, int row, int side, bool release) {
   const double at = side * bound(row, side);
   while (true) {
-    if (++steps_ > step_limit_) return Outcome::exhausted;
+    if (outOfTime()) return Outcome::exhausted;
+    ++steps_;
     const double free_part = decompose(rows, row, side);
     auto r = r_.head(active_count_);
     r = projection_.head(active_count_);

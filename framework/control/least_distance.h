@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chrono>
 
 #include "framework/control/whitened_problem.h"
 
@@ -20,6 +21,8 @@ class LeastDistance {
   /// `independence`: sine of a row's angle to those at their bounds below which it counts as one of their span.
   LeastDistance(int dimension, int row_capacity, double independence = 1e-10);
 
+  using TimePoint = std::chrono::steady_clock::time_point;
+
   enum class Outcome {
     solved,
     infeasible,                                                    ///< the rows contradict each other
@@ -38,8 +41,12 @@ class LeastDistance {
   /// The next call of `solve`, and only that, begins with this row at its upper (+1) or lower (−1) bound.
   void guess(int row, int side);
   void forgetGuess() { guess_count_ = 0; }
-  /// Most steps of a call; beyond it the outcome is `exhausted`.
-  void limitSteps(int steps) { step_limit_ = steps; }
+  /// Most steps of a call, and the moment at which it gives up; beyond them the outcome is `exhausted` and the call late.
+  void limit(int steps, TimePoint end = TimePoint::max()) {
+    step_limit_ = steps;
+    end_ = end;
+  }
+  bool late() const { return late_; }
 
   auto x() const { return x_.head(n_); }
   /// Multipliers λ of all rows, x = c − Bᵀ λ: λ ≥ 0 at an upper bound, ≤ 0 at a lower one.
@@ -63,6 +70,7 @@ class LeastDistance {
   bool keepsDependentEqualities(const Rows& rows) const;
   void holdGuess(const Rows& rows);
   void settle(const Vector& c);
+  bool outOfTime();
   double bound(int row, int side) const { return side > 0 ? bounds_.upper[row] : bounds_.lower[row]; }
   bool isEquality(int row) const { return bounds_.lower && bounds_.lower[row] == bounds_.upper[row]; }
   double violation(int row) const;                                 // of the last products; negative inside the bounds
@@ -85,6 +93,8 @@ class LeastDistance {
   int released_ = 0;
   int steps_ = 0;
   int step_limit_;
+  TimePoint end_ = TimePoint::max();
+  bool late_ = false;
   bool settled_ = false;                                           // x_ and the products belong to the active rows
   int guess_count_ = 0;
   Eigen::VectorXi guess_;                                          // row + 1, negative for a lower bound

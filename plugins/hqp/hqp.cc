@@ -117,6 +117,7 @@ class Hqp::Solver {
   std::vector<std::vector<int>> starts_;                           // the same, of the last tick, by level and pass
   int steps_ = 0;
   int step_limit_ = 0;
+  LeastDistance::TimePoint end_;
   int released_ = 0;
   bool relaxed_ = false;
 };
@@ -166,6 +167,7 @@ void Hqp::Solver::solve(const TickProblem& given, const control::Deadline& deadl
   }
   steps_ = released_ = count_ = limit_count_ = 0;
   step_limit_ = deadline.iterations;
+  end_ = deadline.end();
   chain_.reset();
   y_.setZero();
   base_.setZero();
@@ -274,6 +276,7 @@ bool Hqp::Solver::enterLimits(const TickProblem& problem) {
   }
   centre_.head(size).setZero();
   least_distance_.forgetGuess();
+  least_distance_.limit(std::numeric_limits<int>::max());          // bounded by itself
   const auto outcome =
       least_distance_.solve(rows, small_lower_.head(count_), small_upper_.head(count_), centre_.head(size));
   if (outcome != LeastDistance::Outcome::solved) return false;
@@ -376,7 +379,7 @@ Hqp::Solver::Outcome Hqp::Solver::nearest(int level, Pass pass, int first) {
     const int constraint = std::abs(row) - 1;
     if (constraint < count_ && place_[constraint] >= 0) least_distance_.guess(place_[constraint], row);
   }
-  least_distance_.limitSteps(std::max(step_limit_ - steps_, 0));
+  least_distance_.limit(step_limit_ - steps_, end_);
   const auto outcome = least_distance_.solve(small_.topLeftCorner(free, small_count_), small_lower_.head(small_count_),
                                              small_upper_.head(small_count_), centre_.head(free));
   steps_ += least_distance_.steps();
@@ -387,7 +390,7 @@ Hqp::Solver::Outcome Hqp::Solver::nearest(int level, Pass pass, int first) {
       start.push_back(least_distance_.side(i) * (behind_[least_distance_.active(i)] + 1));
     return Outcome::solved;
   }
-  return steps_ >= step_limit_ ? Outcome::late : Outcome::impossible;
+  return least_distance_.late() ? Outcome::late : Outcome::impossible;
 }
 
 // The level's error, and each free direction at its price: finds which rows are at their bounds, and which of them cost

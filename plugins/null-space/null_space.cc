@@ -36,6 +36,7 @@ struct NullSpace::Workspace {
   Eigen::VectorXd target;                                          // what a level asks for, row by row
   RowMajorMatrix torque;                                           // the one that is being projected
   Eigen::VectorXd total;                                           // L⁻¹ τ
+  control::LeastDistance::TimePoint end;                           // of this tick's deadline
 };
 
 NullSpace::NullSpace(const NullSpaceOptions& options)
@@ -58,6 +59,7 @@ void NullSpace::doSolve(const TickProblem& problem, TickSolution& solution) {
     return;
   }
   work.total.setZero();
+  work.end = deadline().end();
   switch (options_.cascade) {
     case Cascade::augmented: augmented(solution); break;
     case Cascade::successive: successive(solution); break;
@@ -157,16 +159,20 @@ void NullSpace::successive(TickSolution& solution) {
 // Projects work.torque onto what `factor` holds and these inequality rows, and notes which of them came to be held.
 void NullSpace::project(PriorityFactor& factor, int first_inequality, int inequalities, TickSolution& solution) {
   Workspace& work = *work_;
+  work.projection.limit(deadline().iterations - solution.iterations, work.end);
   work.projection.apply(factor, work.inequalities.middleCols(first_inequality, inequalities),
                         work.problem.inequalities().middleCols(first_inequality, inequalities), work.torque);
   const Projection::Counts& counts = work.projection.counts();
   if (counts.failed) {
     solution.status = Status::failed;
-    solution.message = "the inequality rows were not settled in the bounded number of steps; a level was left out";
+    solution.late |= counts.late;
+    solution.message = counts.late ? "the deadline came before the inequality rows were settled; a level was left out"
+                                   : "the inequality rows were not settled in the bounded number of steps; a level was "
+                                     "left out";
   }
+  solution.iterations += counts.steps;
   solution.rows_held += counts.held;
   solution.rows_released += counts.released;
-  solution.iterations += counts.held + 2 * counts.released;
   for (int i = 0; i < counts.held; ++i) {
     const ActiveRow& row =
         work.problem.origin(work.problem.firstInequality() + first_inequality + work.projection.heldRow(i));

@@ -17,7 +17,8 @@ class ActiveSet {
 
   using Outcome = control::LeastDistance::Outcome;
   Outcome solve(const Programme& programme);
-  void limitSteps(int steps) { least_distance_.limitSteps(steps); }
+  void limit(int steps, control::LeastDistance::TimePoint end) { least_distance_.limit(steps, end); }
+  bool late() const { return least_distance_.late(); }
 
   const Eigen::VectorXd& x() const { return x_; }                  ///< the first `variables` are valid
   int steps() const { return least_distance_.steps(); }

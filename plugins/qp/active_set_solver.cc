@@ -20,7 +20,7 @@ class ActiveSetSolver final : public ProgrammeSolver {
     if (start_.size() > 2 && start_[0] == programme.rows && start_[1] == programme.variables)
       for (std::size_t i = 2; i < start_.size(); ++i)
         active_set_->guess(std::abs(start_[i]) - 1, start_[i] > 0 ? 1 : -1);
-    active_set_->limitSteps(deadline.iterations);
+    active_set_->limit(deadline.iterations, deadline.end());
     const ActiveSet::Outcome outcome = active_set_->solve(programme);
     Answer answer;
     answer.iterations = active_set_->steps();
@@ -36,7 +36,7 @@ class ActiveSetSolver final : public ProgrammeSolver {
       x.head(programme.variables) = active_set_->x().head(programme.variables);
     } else if (outcome == ActiveSet::Outcome::infeasible) {
       answer.verdict = Verdict::infeasible;
-    } else if (answer.iterations >= deadline.iterations) {
+    } else if (active_set_->late()) {
       answer.verdict = Verdict::late;
     } else {
       answer.kkt = {1, 1, 1};
