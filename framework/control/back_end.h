@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <limits>
 #include <string>
 #include <vector>
@@ -26,6 +27,12 @@ struct Deadline {
   int iterations = std::numeric_limits<int>::max();                ///< of its solver, so that runs repeat
   double seconds = std::numeric_limits<double>::infinity();        ///< wall clock; runs then need not repeat
   bool isDeclared() const { return iterations < std::numeric_limits<int>::max() || seconds < 1e300; }
+  /// The moment at which a solve that begins now must end.
+  std::chrono::steady_clock::time_point end() const {
+    using Clock = std::chrono::steady_clock;
+    if (!(seconds < 1e6)) return Clock::time_point::max();
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
 };
 
 /// What a back end carries from one tick to the next, as plain numbers of its own.
@@ -46,6 +53,9 @@ class BackEnd {
 
   void setDeadline(const Deadline& deadline) { deadline_ = deadline; }
   const Deadline& deadline() const { return deadline_; }
+  /// Whether ranks are wanted from back ends that can do without them and would compute them for the report alone; off,
+  /// their ranks stay 0 and nullities dof.
+  void setReportsRanks(bool wanted) { reports_ranks_ = wanted; }
   /// The state that, with the problem, decides the next solution to the bit; empty where every tick starts afresh.
   /// `setWarmStart` after `prepare`; what does not fit the shape is ignored.
   virtual WarmStart warmStart() const { return {}; }
@@ -53,6 +63,7 @@ class BackEnd {
 
  protected:
   explicit BackEnd(Abilities abilities) : abilities_(std::move(abilities)) {}
+  bool reportsRanks() const { return reports_ranks_; }
 
  private:
   virtual void doPrepare(const TickProblem& shape) = 0;
@@ -60,6 +71,7 @@ class BackEnd {
 
   Abilities abilities_;
   Deadline deadline_;
+  bool reports_ranks_ = true;
 };
 
 }  // namespace tactus::control

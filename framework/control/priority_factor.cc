@@ -12,6 +12,18 @@ constexpr double rotation_tolerance = 1e-15;                       // cosine bel
 constexpr double recompute_below = 1e-8;
 constexpr double negligible_ratio = 1e-3;                          // to the rank tolerance
 
+/// a ← (I − β v vᵀ) a for `width` neighbouring columns, whose sums stay in registers.
+template <int width>
+void reflectStrip(const double* v, double beta, int rows, double* a, Eigen::Index stride) {
+  double w[width];
+  for (int j = 0; j < width; ++j) w[j] = v[0] * a[j];
+  for (int k = 1; k < rows; ++k)
+    for (int j = 0; j < width; ++j) w[j] += v[k] * a[k * stride + j];
+  for (int j = 0; j < width; ++j) w[j] *= beta;
+  for (int k = 0; k < rows; ++k)
+    for (int j = 0; j < width; ++j) a[k * stride + j] -= v[k] * w[j];
+}
+
 }  // namespace
 
 double fadeWeight(double sigma, const RankOptions& options) {
@@ -31,7 +43,10 @@ PriorityFactor::PriorityFactor(int dimension, int column_capacity, int stage_cap
       inverse_(dimension, dimension),
       triangle_(dimension, column_capacity),
       buffer_(dimension, std::max(dimension, column_capacity)),
-      row_(std::max(dimension, column_capacity)) {
+      order_(column_capacity),
+      sigma_(dimension),
+      tall_(column_capacity, dimension),
+      target_(column_capacity) {
   for (Memory& memory : memories_) {
     memory.v.setZero(dimension, dimension);
     memory.beta.setZero(dimension);
@@ -81,6 +96,7 @@ void PriorityFactor::triangularise(Memory& memory, ColumnsRef columns) {
   left_.head(count).setZero();
   for (int k = first; k < dimension_; ++k) left_.head(count) += columns.row(k).transpose().cwiseAbs2();
   reference_.head(count) = left_.head(count);
+  for (int j = 0; j < count; ++j) order_[j] = j;
   const int steps = std::min(count, dimension_ - first);
   for (int i = 0; i < steps; ++i) {
     const int row = first + i;
@@ -88,6 +104,7 @@ void PriorityFactor::triangularise(Memory& memory, ColumnsRef columns) {
     if (pivot < 0) return;
     if (pivot != i) {
       for (int k = first; k < dimension_; ++k) std::swap(columns(k, i), columns(k, pivot));
+      std::swap(order_[i], order_[pivot]);
       std::swap(left_[i], left_[pivot]);
       std::swap(reference_[i], reference_[pivot]);
     }
@@ -173,10 +190,12 @@ void PriorityFactor::rotateToSingularDirections(Memory& memory, const ColumnsRef
     if (largest == i) continue;
     std::swap(left_[i], left_[largest]);
     U.row(i).swap(U.row(largest));
+    G.row(i).swap(G.row(largest));
   }
   Stage& stage = memory.stage;
   stage.held = stage.rank = 0;
   for (int i = 0; i < r; ++i) {
+    sigma_[i] = left_[i];
     memory.keep[i] = 1 - fadeWeight(left_[i], options_);
     if (left_[i] >= options_.fade) ++stage.held;
     if (left_[i] > options_.rank_tolerance) ++stage.rank;
@@ -189,12 +208,13 @@ void PriorityFactor::reflect(const Memory& memory, int i, ColumnsRef columns) {
   const int row = memory.stage.first + i;
   const int rows = dimension_ - row;
   const int count = static_cast<int>(columns.cols());
-  const auto v = memory.v.col(i).tail(rows);
-  auto w = row_.head(count);
-  w = v[0] * columns.row(row);
-  for (int k = 1; k < rows; ++k) w += v[k] * columns.row(row + k);
-  w *= memory.beta[i];
-  for (int k = 0; k < rows; ++k) columns.row(row + k) -= v[k] * w;
+  const double* v = memory.v.col(i).data() + row;
+  double* a = &columns(row, 0);
+  const Eigen::Index stride = columns.outerStride();
+  int j = 0;
+  for (; j + 8 <= count; j += 8) reflectStrip<8>(v, memory.beta[i], rows, a + j, stride);
+  for (; j + 2 <= count; j += 2) reflectStrip<2>(v, memory.beta[i], rows, a + j, stride);
+  if (j < count) reflectStrip<1>(v, memory.beta[i], rows, a + j, stride);
 }
 
 void PriorityFactor::rotate(const Memory& memory, bool transposed, ColumnsRef columns) {
@@ -209,13 +229,33 @@ void PriorityFactor::rotate(const Memory& memory, bool transposed, ColumnsRef co
   head = turned;
 }
 
-void PriorityFactor::advance(int stage, ColumnsRef columns) {
+void PriorityFactor::turn(int stage, ColumnsRef columns) {
   const Memory& memory = memories_[stage];
   if (columns.cols() == 0) return;
   for (int i = 0; i < memory.reflections; ++i) reflect(memory, i, columns);
+  if (memory.rotated) rotate(memory, false, columns);
+}
+
+void PriorityFactor::turnBack(int stage, ColumnsRef columns) {
+  const Memory& memory = memories_[stage];
+  if (columns.cols() == 0) return;
+  if (memory.rotated) rotate(memory, true, columns);
+  for (int i = memory.reflections - 1; i >= 0; --i) reflect(memory, i, columns);
+}
+
+void PriorityFactor::fadeDirections(const Memory& memory, ColumnsRef columns) {
   if (!memory.rotated) return;
-  rotate(memory, false, columns);
   for (int i = memory.stage.held; i < memory.reflections; ++i) columns.row(memory.stage.first + i) *= memory.keep[i];
+}
+
+void PriorityFactor::bringBack(int stage, ColumnsRef columns) {
+  fadeDirections(memories_[stage], columns);
+  turnBack(stage, columns);
+}
+
+void PriorityFactor::advance(int stage, ColumnsRef columns) {
+  turn(stage, columns);
+  fadeDirections(memories_[stage], columns);
 }
 
 void PriorityFactor::advance(ColumnsRef columns) {
@@ -223,12 +263,84 @@ void PriorityFactor::advance(ColumnsRef columns) {
 }
 
 void PriorityFactor::embed(ColumnsRef columns) {
-  if (columns.cols() == 0) return;
   columns.topRows(held()).setZero();
-  for (int stage = stage_count_ - 1; stage >= 0; --stage) {
-    const Memory& memory = memories_[stage];
-    if (memory.rotated) rotate(memory, true, columns);
-    for (int i = memory.reflections - 1; i >= 0; --i) reflect(memory, i, columns);
+  for (int stage = stage_count_ - 1; stage >= 0; --stage) turnBack(stage, columns);
+}
+
+// Three forms of S.  The stage's columns are Q R P with R (r × count) upper trapezoidal.  Independent rows: S = Rᵀ.
+// Dependent rows: Rᵀ = Q' T, S = T.  Singular directions, G = Uᵀ R with orthogonal rows: S = diag(σ).
+void PriorityFactor::leastSquares(const ConstColumnsRef& columns, const Eigen::Ref<const Eigen::VectorXd>& b,
+                                  VectorRef z) {
+  const Memory& memory = memories_[stage_count_ - 1];
+  const int first = memory.stage.first;
+  const int r = memory.reflections;
+  const int count = static_cast<int>(columns.cols());
+  z.setZero();
+  auto target = target_.head(count);
+  for (int j = 0; j < count; ++j) target[j] = b[order_[j]];
+  if (memory.rotated) {
+    for (int i = 0; i < memory.stage.rank; ++i)
+      z[first + i] = fadeWeight(sigma_[i], options_) * triangle_.row(i).head(count).dot(target) / (sigma_[i] * sigma_[i]);
+    return;
+  }
+  if (count > r) {
+    for (int i = 0; i < r; ++i) tall_.col(i).head(count) = columns.row(first + i).transpose();
+    for (int i = 0; i < r; ++i) {                                  // column i of Rᵀ is 0 above the diagonal
+      auto v = tall_.col(i).segment(i, count - i);
+      const double norm = v.norm();
+      const double head = std::copysign(norm, v[0]);
+      v[0] += head;
+      const double beta = 1 / (norm * std::abs(v[0]));
+      for (int k = i + 1; k < r; ++k) {
+        auto column = tall_.col(k).segment(i, count - i);
+        column -= beta * v.dot(column) * v;
+      }
+      auto rest = target.segment(i, count - i);
+      rest -= beta * v.dot(rest) * v;
+      tall_(i, i) = -head;                                         // below it v, which is not needed again
+    }
+  }
+  z.segment(first, r) = target.head(r);
+  fromMetric(columns, z);
+}
+
+void PriorityFactor::toMetric(const ConstColumnsRef& columns, ColumnsRef rows) const {
+  const Memory& memory = memories_[stage_count_ - 1];
+  const int first = memory.stage.first;
+  const int held = memory.stage.held;
+  if (memory.rotated) {
+    for (int i = 0; i < held; ++i) rows.row(first + i) /= sigma_[i];
+  } else if (columns.cols() > memory.reflections) {                // T⁻ᵀ
+    for (int i = 0; i < held; ++i) {
+      for (int k = 0; k < i; ++k) rows.row(first + i) -= tall_(k, i) * rows.row(first + k);
+      rows.row(first + i) /= tall_(i, i);
+    }
+  } else {                                                         // R⁻¹
+    for (int i = held - 1; i >= 0; --i) {
+      for (int k = i + 1; k < held; ++k)
+        if (columns(first + i, k) != 0) rows.row(first + i) -= columns(first + i, k) * rows.row(first + k);
+      rows.row(first + i) /= columns(first + i, i);
+    }
+  }
+}
+
+void PriorityFactor::fromMetric(const ConstColumnsRef& columns, VectorRef u) const {
+  const Memory& memory = memories_[stage_count_ - 1];
+  const int first = memory.stage.first;
+  const int held = memory.stage.held;
+  auto z = u.segment(first, held);
+  if (memory.rotated) {
+    z.array() /= sigma_.head(held).array();
+  } else if (columns.cols() > memory.reflections) {                // T⁻¹
+    for (int i = held - 1; i >= 0; --i) {
+      for (int k = i + 1; k < held; ++k) z[i] -= tall_(i, k) * z[k];
+      z[i] /= tall_(i, i);
+    }
+  } else {                                                         // R⁻ᵀ
+    for (int i = 0; i < held; ++i) {
+      for (int k = 0; k < i; ++k) z[i] -= columns(first + k, i) * z[k];
+      z[i] /= columns(first + i, i);
+    }
   }
 }
 

@@ -16,6 +16,9 @@ struct RankOptions {
   double fade = 1e-6;
 };
 
+/// For those who divide by σ, as `consistent` cascades and hierarchical programmes do.
+inline constexpr RankOptions dividing_rank{1e-5, 1e-3};
+
 /// 0 at `rank_tolerance`, 1 at `fade`, 3s² − 2s³ between them.
 double fadeWeight(double sigma, const RankOptions& options);
 
@@ -29,6 +32,8 @@ double fadeWeight(double sigma, const RankOptions& options);
 /// rest, and nothing that is fully held above is ever reached.  Takes no memory after construction.
 class PriorityFactor {
  public:
+  using VectorRef = Eigen::Ref<Eigen::VectorXd, 0, Eigen::InnerStride<>>;
+
   struct Stage {
     int first = 0;                                                 ///< coordinates held by the stages before
     int held = 0;                                                  ///< directions that this stage holds exactly
@@ -45,7 +50,20 @@ class PriorityFactor {
   const Stage& hold(ColumnsRef columns);
   void dropLastStage() { --stage_count_; }
 
+  // Least squares in the directions of the last stage, right after `hold`; `columns` as it left them.  The directions
+  // that it holds are its coordinates z₁; ‖columnsᵀ z − b‖² = ‖S (z₁ − z₁*)‖² + what no z can change, S regular.
+
+  /// z (dimension) minimises ‖columnsᵀ z − b‖ and is 0 outside of the stage; a faded direction gets the share of its
+  /// weight.  b: one number a column, in the order in which the columns came.
+  void leastSquares(const ConstColumnsRef& columns, const Eigen::Ref<const Eigen::VectorXd>& b,
+                    VectorRef z);
+  /// Rows g z₁ in the stage's coordinates become rows of u₁ = S z₁: g ← S⁻ᵀ g in the held coordinates.
+  void toMetric(const ConstColumnsRef& columns, ColumnsRef rows) const;
+  /// z₁ = S⁻¹ u₁, in place in the held coordinates.
+  void fromMetric(const ConstColumnsRef& columns, VectorRef u) const;
+
   int stages() const { return stage_count_; }
+  const Stage& lastStage() const { return memories_[stage_count_ - 1].stage; }
   int dimension() const { return dimension_; }
   /// Coordinates held by all stages; those from here on are free.
   int held() const;
@@ -55,6 +73,14 @@ class PriorityFactor {
   void advance(ColumnsRef columns);
   /// Back to R^n of what is free; the held coordinates are overwritten.
   void embed(ColumnsRef columns);
+  /// The coordinates of one stage alone, an orthogonal change that fades nothing; and back.
+  void turn(int stage, ColumnsRef columns);
+  void turnBack(int stage, ColumnsRef columns);
+  /// What `advance` does to columns after `turn`.
+  void fade(int stage, ColumnsRef columns) { fadeDirections(memories_[stage], columns); }
+  /// Back through one stage, with faded directions scaled as `advance` scales them: rows that were advanced and
+  /// coordinates that are brought back so belong together.
+  void bringBack(int stage, ColumnsRef columns);
 
  private:
   // A stage with its memory: reflections H_i = I − β_i v_i v_iᵀ, v_i zero above coordinate first + i.
@@ -72,6 +98,7 @@ class PriorityFactor {
   int pivotColumn(ColumnsRef columns, int row, int from);
   bool clearlyAboveFade(const Memory& memory, const ColumnsRef& columns);
   void rotateToSingularDirections(Memory& memory, const ColumnsRef& columns);
+  void fadeDirections(const Memory& memory, ColumnsRef columns);
   void reflect(const Memory& memory, int i, ColumnsRef columns);
   void rotate(const Memory& memory, bool transposed, ColumnsRef columns);
 
@@ -85,7 +112,11 @@ class PriorityFactor {
   Eigen::MatrixXd inverse_;
   RowMajorMatrix triangle_;
   RowMajorMatrix buffer_;
-  Eigen::RowVectorXd row_;
+  // Of the last stage, for least squares.
+  Eigen::VectorXi order_;                                          // which column came where
+  Eigen::VectorXd sigma_;                                          // falling, where singular directions were computed
+  Eigen::MatrixXd tall_;                                           // QR of Rᵀ where rows are dependent: its triangle T
+  Eigen::VectorXd target_;
 };
 
 }  // namespace tactus::control

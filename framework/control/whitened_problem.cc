@@ -13,7 +13,7 @@ WhitenedProblem::WhitenedProblem(const TickProblem& shape)
       norms_(shape.rowCapacity()),
       forces_(shape.rowCapacity()),
       own_torques_(shape.dof, shape.levels.size()),
-      difference_(shape.dof) {}
+      products_(shape.rowCapacity()) {}
 
 bool WhitenedProblem::update(const TickProblem& problem) {
   cholesky_.compute(problem.mass_matrix);
@@ -79,21 +79,46 @@ void WhitenedProblem::toTorque(const Eigen::VectorXd& y, Eigen::VectorXd& torque
   torque.noalias() = massFactor().triangularView<Eigen::Lower>() * y;
 }
 
-double WhitenedProblem::residual(const TickProblem& problem, int level, const Eigen::VectorXd& y) {
-  difference_ = y - own_torques_.col(level);
-  double sum = 0;
+int WhitenedProblem::gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y,
+                                     RowMajorMatrix& columns, Eigen::VectorXd& b) const {
+  const LevelRows& rows = levels_[level];
+  int count = 0;
   const auto add = [&](int j) {
     const ActiveRow& at = origins_[j];
     const TickTask& task = problem.levels[at.level].tasks[at.task];
-    const double r = task.has_acceleration ? norms_[j] * columns_.col(j).dot(y) - task.acceleration[at.row]
-                                           : norms_[j] * columns_.col(j).dot(difference_);
-    sum += r * r;
+    columns.col(count) = columns_.col(j);
+    b[count] = task.has_acceleration ? (norms_[j] > 0 ? task.acceleration[at.row] / norms_[j] : 0)
+                                     : columns_.col(j).dot(own_torques_.col(level));
+    b[count++] -= columns_.col(j).dot(y);
   };
-  const LevelRows& rows = levels_[level];
   for (int j = rows.first_equality; j < rows.first_equality + rows.equalities; ++j) add(j);
   for (int j = rows.first_inequality; j < rows.first_inequality + rows.inequalities; ++j)
     if (forces_[j] != 0) add(j);
-  return std::sqrt(sum);
+  return count;
+}
+
+void WhitenedProblem::reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution) {
+  for (int i = 0; i < levelCount(); ++i) {
+    const LevelRows& rows = levels_[i];
+    double sum = 0;
+    const auto add = [&](int first, int count, bool with_force_alone) {
+      auto products = products_.head(count);                       // A (y − y°)
+      products.setZero();
+      for (int k = 0; k < dof_; ++k)
+        products += (y[k] - own_torques_(k, i)) * columns_.row(k).segment(first, count);
+      for (int j = first; j < first + count; ++j) {
+        if (with_force_alone && forces_[j] == 0) continue;
+        const ActiveRow& at = origins_[j];
+        const TickTask& task = problem.levels[at.level].tasks[at.task];
+        const double r = task.has_acceleration ? norms_[j] * columns_.col(j).dot(y) - task.acceleration[at.row]
+                                               : norms_[j] * products[j - first];
+        sum += r * r;
+      }
+    };
+    add(rows.first_equality, rows.equalities, false);
+    add(rows.first_inequality, rows.inequalities, true);
+    solution.levels[i].residual = std::sqrt(sum);
+  }
 }
 
 }  // namespace tactus::control

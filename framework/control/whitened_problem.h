@@ -50,9 +50,13 @@ class WhitenedProblem {
   /// τ = L y.
   void toTorque(const Eigen::VectorXd& y, Eigen::VectorXd& torque) const;
 
-  /// ‖J M⁻¹ τ − a‖ of a level for τ = L y.  J stacks its equality rows and its inequality rows with F ≠ 0;
-  /// a = J M⁻¹ τ°, or the acceleration that a task asks for.
-  double residual(const TickProblem& problem, int level, const Eigen::VectorXd& y);
+  /// ‖J M⁻¹ τ − a‖ of every level for τ = L y, into the solution.  J stacks a level's equality rows and its inequality
+  /// rows with F ≠ 0; a = J M⁻¹ τ°, or the acceleration that a task asks for.
+  void reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution);
+  /// What level i asks for, J_i y = a_i in unit rows, with J_i and a_i as above: writes the rows to `columns` (dof ×
+  /// capacity) and a_i − J_i y to `b`; returns their number.  The level's equality rows come first.
+  int gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, RowMajorMatrix& columns,
+                      Eigen::VectorXd& b) const;
 
  private:
   struct LevelRows {
@@ -75,7 +79,7 @@ class WhitenedProblem {
   Eigen::VectorXd norms_;
   Eigen::VectorXd forces_;
   Eigen::MatrixXd own_torques_;                                    // dof × levels
-  Eigen::VectorXd difference_;
+  Eigen::RowVectorXd products_;
 };
 
 }  // namespace tactus::control

@@ -23,6 +23,7 @@ struct NullSpace::Workspace {
         projection(shape.dof, shape.rowCapacity(), options.inequalities, options.rank, options.release_rows),
         rows(shape.dof, shape.rowCapacity()),
         inequalities(shape.dof, shape.rowCapacity()),
+        target(shape.rowCapacity()),
         torque(shape.dof, 1),
         total(shape.dof) {}
 
@@ -32,12 +33,14 @@ struct NullSpace::Workspace {
   Projection projection;
   RowMajorMatrix rows;                                             // equality rows on their way into a factor
   RowMajorMatrix inequalities;                                     // taken through the factor's stages
+  Eigen::VectorXd target;                                          // what a level asks for, row by row
   RowMajorMatrix torque;                                           // the one that is being projected
   Eigen::VectorXd total;                                           // L⁻¹ τ
+  control::LeastDistance::TimePoint end;                           // of this tick's deadline
 };
 
 NullSpace::NullSpace(const NullSpaceOptions& options)
-    : BackEnd({.strict_levels = options.cascade == Cascade::augmented,
+    : BackEnd({.strict_levels = options.cascade != Cascade::successive,
                .inequalities = true,
                .strict_first_level = true,
                .why_not_strict = "the successive cascade keeps only its first level strictly"}),
@@ -56,10 +59,12 @@ void NullSpace::doSolve(const TickProblem& problem, TickSolution& solution) {
     return;
   }
   work.total.setZero();
-  if (options_.cascade == Cascade::augmented)
-    augmented(solution);
-  else
-    successive(solution);
+  work.end = deadline().end();
+  switch (options_.cascade) {
+    case Cascade::augmented: augmented(solution); break;
+    case Cascade::successive: successive(solution); break;
+    case Cascade::consistent: consistent(problem, solution); break;
+  }
 
   work.problem.toTorque(work.total, solution.torque);
   if (problem.torque_limits) {
@@ -71,8 +76,7 @@ void NullSpace::doSolve(const TickProblem& problem, TickSolution& solution) {
       solution.message = "no multiple of the torque lies within the torque limits";
     }
   }
-  for (int i = 0; i < work.problem.levelCount(); ++i)
-    solution.levels[i].residual = work.problem.residual(problem, i, work.total);
+  work.problem.reportResiduals(problem, work.total, solution);
 }
 
 void NullSpace::augmented(TickSolution& solution) {
@@ -85,6 +89,34 @@ void NullSpace::augmented(TickSolution& solution) {
   for (int i = 0; i < levels; ++i) {
     work.torque = work.problem.ownTorque(i);
     if (i > 0) project(work.chain, 0, work.problem.inequalityRowsAbove(i), solution);
+    work.total += work.torque;
+
+    auto rows = work.rows.leftCols(work.problem.equalityRows(i));
+    rows = work.problem.equalities(i);
+    work.chain.advance(rows);
+    control::LevelRanks::write(work.chain.hold(rows), i, work.problem.dof(), solution);
+    if (i + 1 < levels) work.chain.advance(i, inequalities);
+  }
+}
+
+void NullSpace::consistent(const TickProblem& problem, TickSolution& solution) {
+  Workspace& work = *work_;
+  const int levels = work.problem.levelCount();
+  auto inequalities = work.inequalities.leftCols(work.problem.inequalityRowsAbove(levels));
+  inequalities = work.problem.inequalities();
+  work.chain.reset();
+  for (int i = 0; i < levels; ++i) {
+    // What the level asks for, in the directions that the equality rows above leave.
+    const int count = work.problem.gatherObjective(problem, i, work.total, work.rows, work.target);
+    auto wanted = work.rows.leftCols(count);
+    work.chain.advance(wanted);
+    work.chain.hold(wanted);
+    work.chain.leastSquares(wanted, work.target.head(count), work.torque.col(0));
+    work.chain.turnBack(i, work.torque);
+    work.chain.dropLastStage();
+    for (int stage = i - 1; stage >= 0; --stage) work.chain.bringBack(stage, work.torque);
+    if (i > 0 && work.problem.inequalityRowsAbove(i) > 0)
+      project(work.chain, 0, work.problem.inequalityRowsAbove(i), solution);
     work.total += work.torque;
 
     auto rows = work.rows.leftCols(work.problem.equalityRows(i));
@@ -127,16 +159,20 @@ void NullSpace::successive(TickSolution& solution) {
 // Projects work.torque onto what `factor` holds and these inequality rows, and notes which of them came to be held.
 void NullSpace::project(PriorityFactor& factor, int first_inequality, int inequalities, TickSolution& solution) {
   Workspace& work = *work_;
+  work.projection.limit(deadline().iterations - solution.iterations, work.end);
   work.projection.apply(factor, work.inequalities.middleCols(first_inequality, inequalities),
                         work.problem.inequalities().middleCols(first_inequality, inequalities), work.torque);
   const Projection::Counts& counts = work.projection.counts();
   if (counts.failed) {
     solution.status = Status::failed;
-    solution.message = "the inequality rows were not settled in the bounded number of steps; a level was left out";
+    solution.late |= counts.late;
+    solution.message = counts.late ? "the deadline came before the inequality rows were settled; a level was left out"
+                                   : "the inequality rows were not settled in the bounded number of steps; a level was "
+                                     "left out";
   }
+  solution.iterations += counts.steps;
   solution.rows_held += counts.held;
   solution.rows_released += counts.released;
-  solution.iterations += counts.held + 2 * counts.released;
   for (int i = 0; i < counts.held; ++i) {
     const ActiveRow& row =
         work.problem.origin(work.problem.firstInequality() + first_inequality + work.projection.heldRow(i));

@@ -9,9 +9,14 @@ using control::ValueType;
 
 std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
   NullSpaceOptions options;
-  options.cascade = values.text("projection") == "successive" ? Cascade::successive : Cascade::augmented;
+  const std::string& projection = values.text("projection");
+  options.cascade = projection == "successive"   ? Cascade::successive
+                    : projection == "consistent" ? Cascade::consistent
+                                                 : Cascade::augmented;
   options.inequalities = values.text("inequalities") == "one-pass" ? Inequalities::one_pass : Inequalities::exact;
-  options.rank = {values.real("rank-tolerance"), values.real("fade")};
+  if (options.cascade == Cascade::consistent) options.rank = control::dividing_rank;
+  if (values.has("rank-tolerance")) options.rank.rank_tolerance = values.real("rank-tolerance");
+  if (values.has("fade")) options.rank.fade = values.real("fade");
   if (options.rank.fade < options.rank.rank_tolerance)
     throw control::ElementError("fade", "fade must not be below rank-tolerance");
   return std::make_unique<NullSpace>(options);
@@ -29,21 +34,23 @@ void registerElements(control::Registry& registry) {
       {.name = "projection", .type = ValueType::choice, .default_text = "augmented",
        .description =
            "augmented: each level's torque is projected alone onto the rows of all levels above, strict for all levels. "
-           "successive: Algorithm 4, from the lowest level up, strict for level 1 only.",
-       .choices = {"successive", "augmented"}},
+           "successive: Algorithm 4, from the lowest level up, strict for level 1 only. consistent: strict for all levels, "
+           "and each level gets the acceleration that it asks for as far as the levels above leave it.",
+       .choices = {"successive", "augmented", "consistent"}},
       {.name = "inequalities", .type = ValueType::choice, .default_text = "exact",
        .description =
            "exact: the nearest torque in the inverse-inertia metric that keeps every row. one-pass: Algorithm 3, which "
            "can leave rows violated that the unprojected torque kept.",
        .choices = {"one-pass", "exact"}},
-      {.name = "rank-tolerance", .type = ValueType::real, .unit = "1", .default_text = "1e-8",
+      {.name = "rank-tolerance", .type = ValueType::real, .unit = "1",
        .description =
            "Singular value, of unit rows in the inverse-inertia metric projected into what higher levels left, up to "
-           "which a direction is not held.",
+           "which a direction is not held. Without it 1e-8; 1e-5 where the projection is consistent.",
        .lower = 0, .upper = 1, .lower_open = true},
-      {.name = "fade", .type = ValueType::real, .unit = "1", .default_text = "1e-6",
+      {.name = "fade", .type = ValueType::real, .unit = "1",
        .description =
-           "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance.",
+           "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance. Without "
+           "it 1e-6; 1e-3 where the projection is consistent, which divides by singular values.",
        .lower = 0, .upper = 1, .lower_open = true},
   };
   registry.addBackEnd(std::move(row), make);

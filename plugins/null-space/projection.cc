@@ -73,6 +73,8 @@ void Projection::nearest(PriorityFactor& factor, const ConstColumnsRef& inequali
     const auto outcome =
         least_distance_.solve(rows_.topLeftCorner(free, count), bounds_.head(count), point, release_);
     counts_.failed = outcome != control::LeastDistance::Outcome::solved;
+    counts_.late = least_distance_.late();
+    counts_.steps = least_distance_.steps();
     counts_.held = least_distance_.activeCount();
     counts_.released = least_distance_.releasedCount();
     for (int i = 0; i < counts_.held; ++i) held_rows_[i] = candidates_[least_distance_.active(i)];

@@ -19,7 +19,9 @@ class Projection {
   struct Counts {
     int held = 0;                                                  ///< inequality rows held at their bound
     int released = 0;                                              ///< held on the way and let go again
+    int steps = 0;                                                 ///< of the search for the rows to hold
     bool failed = false;                                           ///< the bounded number of steps did not suffice
+    bool late = false;                                             ///< because the deadline came first
   };
 
   Projection(int dof, int row_capacity, Inequalities inequalities, control::RankOptions options, bool release);
@@ -29,6 +31,8 @@ class Projection {
   void apply(control::PriorityFactor& factor, const control::ConstColumnsRef& inequalities,
              const control::ConstColumnsRef& original, control::ColumnsRef torque);
 
+  /// What is left of a tick's deadline for the next call.
+  void limit(int steps, control::LeastDistance::TimePoint end) { least_distance_.limit(steps, end); }
   const Counts& counts() const { return counts_; }
   /// Column indices of the inequality rows held by the last projection, counts().held of them.
   int heldRow(int i) const { return held_rows_[i]; }

@@ -1,5 +1,5 @@
 #include "framework/runtime/plugin_api.h"
-#include "plugins/qp/qp_back_end.h"
+#include "plugins/qp/solvers.h"
 
 namespace tactus::qp {
 namespace {
@@ -14,8 +14,11 @@ std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
   options.weight_ratio = values.real("weight-ratio");
   options.force_weight = values.real("force-weight");
   options.regularisation = values.real("regularisation");
-  return std::make_unique<QpBackEnd>(options,
-                                     values.text("solver") == "nlopt" ? makeNloptSolver() : makeIpoptSolver());
+  options.friction_edges = values.integer("friction-edges");
+  const std::string& solver = values.text("solver");
+  return std::make_unique<QpBackEnd>(
+      options, solver == "active-set" ? makeActiveSetSolver()
+                                      : makeReferenceSolver(solver == "nlopt" ? makeNloptSolver() : makeIpoptSolver()));
 }
 
 void registerElements(control::Registry& registry) {
@@ -39,8 +42,10 @@ void registerElements(control::Registry& registry) {
            "row times the root of the inertia that it meets, so that an arm's and a finger's errors weigh alike.",
        .choices = {"identity", "inertia"}},
       {.name = "solver", .type = ValueType::choice, .default_text = "ipopt",
-       .description = "ipopt: primal-dual interior point. nlopt: sequential least squares (SLSQP).",
-       .choices = {"ipopt", "nlopt"}},
+       .description =
+           "ipopt: primal-dual interior point. nlopt: sequential least squares (SLSQP). active-set: Tactus's own, for "
+           "real time: a dual active set that starts from the rows at their bounds in the last tick.",
+       .choices = {"ipopt", "nlopt", "active-set"}},
       {.name = "weight-ratio", .type = ValueType::real, .unit = "1", .default_text = "100",
        .description = "Weight of a level over that of the next; the first has 1. A level's own weight replaces it.",
        .lower = 0, .lower_open = true},
@@ -52,6 +57,8 @@ void registerElements(control::Registry& registry) {
            "w_r over the least level weight: price of torque, in the inverse-inertia metric, that no task asks for. "
            "Acceleration objective only.",
        .lower = 0, .lower_open = true},
+      {.name = "friction-edges", .type = ValueType::integer, .unit = "1", .default_text = "4",
+       .description = "Edges of the pyramid inside each friction cone.", .lower = 3, .upper = 64},
   };
   registry.addBackEnd(std::move(row), make);
 }

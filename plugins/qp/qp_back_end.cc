@@ -1,10 +1,6 @@
 #include "plugins/qp/qp_back_end.h"
 
-#include <algorithm>
-
-#include "framework/control/kkt.h"
 #include "framework/control/level_ranks.h"
-#include "plugins/qp/reduction.h"
 
 namespace tactus::qp {
 
@@ -17,34 +13,32 @@ struct QpBackEnd::Workspace {
   Workspace(const TickProblem& shape, const WeightedQpOptions& options)
       : whitened(shape),
         programme(shape, options),
-        reduction(WeightedQp::variableCapacity(shape), WeightedQp::objectiveCapacity(shape), shape.rowCapacity(),
-                  WeightedQp::inequalityCapacity(shape)),
-        kkt(WeightedQp::variableCapacity(shape), shape.rowCapacity(), WeightedQp::inequalityCapacity(shape)),
         ranks(shape),
-        nearest(WeightedQp::variableCapacity(shape), WeightedQp::inequalityCapacity(shape)),
+        x(WeightedQp::variableCapacity(shape)),
         y(shape.dof) {}
 
   control::WhitenedProblem whitened;
   WeightedQp programme;
-  Reduction reduction;
-  control::KktCheck kkt;
   control::LevelRanks ranks;
-  control::LeastDistance nearest;
-  Eigen::VectorXd v;
   Eigen::VectorXd x;
   Eigen::VectorXd y;                                               // L⁻¹ τ
 };
 
-QpBackEnd::QpBackEnd(const WeightedQpOptions& options, std::unique_ptr<QpSolver> solver, bool polish)
+bool isOptimal(const control::KktResidual& kkt) {
+  return kkt.primal <= QpBackEnd::primal_limit && kkt.complementarity <= QpBackEnd::complementarity_limit &&
+         kkt.stationarity <= QpBackEnd::stationarity_limit;
+}
+
+QpBackEnd::QpBackEnd(const WeightedQpOptions& options, std::unique_ptr<ProgrammeSolver> solver)
     : BackEnd({.inequalities = true, .torque_limits = true, .force_bounds = true, .friction_cones = true}),
       options_(options),
-      rows_(std::move(solver), polish) {}
+      solver_(std::move(solver)) {}
 
 QpBackEnd::~QpBackEnd() = default;
 
 void QpBackEnd::doPrepare(const TickProblem& shape) {
   work_ = std::make_unique<Workspace>(shape, options_);
-  rows_.prepare(WeightedQp::variableCapacity(shape), WeightedQp::inequalityCapacity(shape));
+  solver_->prepare(shape, options_);
 }
 
 void QpBackEnd::doSolve(const TickProblem& problem, TickSolution& solution) {
@@ -56,39 +50,29 @@ void QpBackEnd::doSolve(const TickProblem& problem, TickSolution& solution) {
     return;
   }
   work.programme.build(problem, work.whitened);
-  work.reduction.reduce(work.programme.programme());
-  const LeastDistanceProgramme& reduced = work.reduction.leastDistance();
-  SolverReport solver;
-  bool optimal = false;
-  for (const double tolerance : polish_tolerances) {
-    solver = rows_.solve(reduced, tolerance, work.v);
-    work.reduction.restore(work.v, work.x);
-    optimal = judge(solution);
-    if (optimal || !rows_.polishes()) break;
-  }
-  solution.iterations = solver.iterations;
-  if (!optimal || work.reduction.contradictory()) {
-    const bool infeasible =
-        work.reduction.contradictory() ||
-        work.nearest.solve(reduced.rows, reduced.bounds, Eigen::VectorXd::Zero(reduced.variables())) ==
-            control::LeastDistance::Outcome::infeasible;
-    solution.status = infeasible ? Status::infeasible : Status::failed;
-    solution.message = infeasible ? "torque limits, force bounds and rows contradict each other"
-                                  : "the solver's answer is not optimal (" + solver.status + ")";
-    fallBack(problem, solution);
-  } else {
+  const ProgrammeSolver::Answer answer = solver_->solve(work.programme.programme(), deadline(), work.x);
+  solution.kkt = answer.kkt;
+  solution.has_kkt = answer.verdict == ProgrammeSolver::Verdict::done;
+  solution.iterations = answer.iterations;
+  solution.rows_released = answer.released;
+  if (solution.has_kkt && isOptimal(answer.kkt)) {
     solution.n_contact_forces = work.programme.answer(problem, work.whitened, work.x, solution.torque,
                                                       solution.contact_forces);
+  } else {
+    solution.late = answer.verdict == ProgrammeSolver::Verdict::late;
+    solution.status = answer.verdict == ProgrammeSolver::Verdict::infeasible ? Status::infeasible : Status::failed;
+    if (solution.late) {
+      solution.message = "the deadline came before the optimum";
+    } else if (solution.status == Status::infeasible) {
+      solution.message = "torque limits, force bounds and rows contradict each other";
+    } else {
+      solution.message = "the solver's answer is not optimal (";
+      solution.message += answer.status;
+      solution.message += ")";
+    }
+    fallBack(problem, solution);
   }
   report(problem, solution);
-}
-
-// Computes the KKT residual of work.x; true when it keeps the limits.
-bool QpBackEnd::judge(TickSolution& solution) {
-  solution.kkt = work_->kkt.residual(work_->programme.programme(), work_->x);
-  solution.has_kkt = true;
-  return solution.kkt.primal <= primal_limit && solution.kkt.complementarity <= complementarity_limit &&
-         solution.kkt.stationarity <= stationarity_limit;
 }
 
 void QpBackEnd::fallBack(const TickProblem& problem, TickSolution& solution) {
@@ -102,14 +86,14 @@ void QpBackEnd::fallBack(const TickProblem& problem, TickSolution& solution) {
 
 void QpBackEnd::report(const TickProblem& problem, TickSolution& solution) {
   Workspace& work = *work_;
-  work.ranks.report(work.whitened, solution);
-  work.y = work.whitened.massFactor().triangularView<Eigen::Lower>().solve(solution.torque);
-  for (int i = 0; i < work.whitened.levelCount(); ++i)
-    solution.levels[i].residual = work.whitened.residual(problem, i, work.y);
+  if (reportsRanks()) work.ranks.report(work.whitened, solution);
+  work.y = solution.torque;
+  work.whitened.massFactor().triangularView<Eigen::Lower>().solveInPlace(work.y);
+  work.whitened.reportResiduals(problem, work.y, solution);
   if (solution.status != Status::ok) return;
-  for (int i = 0; i < work.kkt.activeCount(); ++i) {
-    const int row = work.programme.inequalityOrigin(work.kkt.active(i));
-    if (row < 0) continue;
+  for (int i = 0; i < solver_->activeCount(); ++i) {
+    const int row = work.programme.origin(solver_->active(i));
+    if (row < 0 || work.programme.isEquality(solver_->active(i))) continue;
     const ActiveRow& at = work.whitened.origin(row);
     solution.levels[at.level].active.push_back(at);
     ++solution.rows_held;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace tactus::qp {
 
@@ -15,7 +17,7 @@ using control::WhitenedProblem;
 namespace {
 
 constexpr int rows_per_friction_contact = 3;
-constexpr int limits_per_force = 4;                                // two bounds; a pyramid's four sides per three
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 
 int contactRows(const TickProblem& shape) {
   int rows = 0;
@@ -29,13 +31,12 @@ int contactRows(const TickProblem& shape) {
 
 int WeightedQp::variableCapacity(const TickProblem& shape) { return shape.dof + contactRows(shape); }
 
-int WeightedQp::inequalityCapacity(const TickProblem& shape) {
-  return shape.rowCapacity() + 2 * shape.dof + limits_per_force * contactRows(shape);
+int WeightedQp::rowCapacity(const TickProblem& shape, const WeightedQpOptions& options) {
+  // Of three rows with friction one has bounds, and each edge has a side.
+  return shape.rowCapacity() + shape.dof + contactRows(shape) * (1 + options.friction_edges);
 }
 
-int WeightedQp::objectiveCapacity(const TickProblem& shape) {
-  return shape.rowCapacity() + shape.dof + contactRows(shape);
-}
+int WeightedQp::objectiveCapacity(const TickProblem& shape) { return shape.rowCapacity(); }
 
 WeightedQp::WeightedQp(const TickProblem& shape, const WeightedQpOptions& options)
     : options_(options),
@@ -43,15 +44,23 @@ WeightedQp::WeightedQp(const TickProblem& shape, const WeightedQpOptions& option
       weights_(shape.levels.size()),
       roles_(shape.rowCapacity()),
       variables_(shape.rowCapacity()),
-      inequality_origins_(inequalityCapacity(shape)),
+      origins_(rowCapacity(shape, options)),
       own_(shape.dof, shape.levels.size()),
       has_own_(shape.levels.size()) {
   const int variables = variableCapacity(shape);
-  programme_.F.resize(objectiveCapacity(shape), variables);
+  const int rows = rowCapacity(shape, options);
+  programme_.dense = dof_;
+  programme_.F.resize(objectiveCapacity(shape), dof_);
   programme_.t.resize(objectiveCapacity(shape));
-  programme_.E.resize(contactRows(shape), variables);
-  programme_.G.resize(inequalityCapacity(shape), variables);
-  programme_.h.resize(inequalityCapacity(shape));
+  programme_.ridge.resize(variables);
+  programme_.reference.resize(variables);
+  programme_.A.resize(variables, rows);
+  programme_.lower.resize(rows);
+  programme_.upper.resize(rows);
+}
+
+bool WeightedQp::torqueCoordinates() const {
+  return options_.objective == Objective::torque && options_.metric == Metric::identity;
 }
 
 // A contact with friction is one thing: where its normal force backs off, its tangential rows hold nothing.
@@ -76,9 +85,11 @@ void WeightedQp::build(const TickProblem& problem, const WhitenedProblem& whiten
     has_own_[at.level] = true;
   }
   programme_.variables = dof_ + force_count_;
-  programme_.objective_rows = programme_.equality_rows = programme_.inequality_rows = 0;
+  programme_.objective_rows = programme_.rows = 0;
   addObjective(problem, whitened);
-  addRowConstraints(whitened);
+  addEqualities(whitened);
+  addInequalities(whitened);
+  if (torqueCoordinates()) toCoordinates(whitened);
   if (problem.torque_limits) addTorqueLimits(problem, whitened);
   addForceBounds(problem, whitened);
 }
@@ -95,17 +106,17 @@ void WeightedQp::addObjective(const TickProblem& problem, const WhitenedProblem&
     weight = problem.levels[i].weight.value_or(weight);
     weights_[i] = weight;
   }
-  programme_.F.leftCols(programme_.variables).setZero();
   if (options_.objective == Objective::torque)
     addTorqueObjective(whitened);
   else
     addAccelerationObjective(problem, whitened);
+  const double root = std::sqrt(options_.force_weight);
   for (int j = 0; j < whitened.rowCount(); ++j) {
     if (variables_[j] < 0) continue;
     const ActiveRow& at = whitened.origin(j);
-    const int row = programme_.objective_rows++;
-    programme_.F(row, variables_[j]) = std::sqrt(options_.force_weight) / forceScale(whitened, j);
-    programme_.t[row] = std::sqrt(options_.force_weight) * problem.levels[at.level].tasks[at.task].force[at.row];
+    const double scale = forceScale(whitened, j);
+    programme_.ridge[variables_[j]] = root / scale;
+    programme_.reference[variables_[j]] = problem.levels[at.level].tasks[at.task].force[at.row] * scale;
   }
 }
 
@@ -113,14 +124,13 @@ void WeightedQp::addTorqueObjective(const WhitenedProblem& whitened) {
   double inverse = 0;
   for (std::size_t i = 0; i < weights_.size(); ++i)
     if (has_own_[i]) inverse += 1 / weights_[i];
-  const double root = inverse > 0 ? std::sqrt(1 / inverse) : 1;
-  auto F = programme_.F.topLeftCorner(dof_, dof_);
-  if (options_.metric == Metric::identity)
-    F = root * Eigen::MatrixXd(whitened.massFactor().triangularView<Eigen::Lower>());
-  else
-    F.diagonal().setConstant(root);
-  programme_.t.head(dof_) = F * own_.rowwise().sum();
-  programme_.objective_rows = dof_;
+  programme_.ridge.head(dof_).setConstant(inverse > 0 ? std::sqrt(1 / inverse) : 1);
+  auto reference = programme_.reference.head(dof_);
+  reference = own_.rowwise().sum();
+  if (torqueCoordinates()) {
+    const auto& L = whitened.massFactor();
+    for (int i = dof_ - 1; i >= 0; --i) reference[i] = L.row(i).head(i + 1).dot(reference.head(i + 1));
+  }
 }
 
 void WeightedQp::addAccelerationObjective(const TickProblem& problem, const WhitenedProblem& whitened) {
@@ -135,87 +145,90 @@ void WeightedQp::addAccelerationObjective(const TickProblem& problem, const Whit
     const double root = std::sqrt(weights_[at.level]);
     const double norm = whitened.norm(j);                          // √(J M⁻¹ Jᵀ); whitened rows have length 1
     const double scale = options_.metric == Metric::identity ? root : norm > 0 ? root / norm : 0;
-    programme_.F.row(row).head(dof_) = scale * norm * whitened.row(j).transpose();
+    programme_.F.row(row) = scale * norm * whitened.row(j).transpose();
     programme_.t[row] = task.has_acceleration ? scale * task.acceleration[at.row]
-                                              : programme_.F.row(row).head(dof_).dot(own_.col(at.level));
+                                              : programme_.F.row(row).dot(own_.col(at.level));
   }
   const double least = weights_.empty() ? 1 : *std::min_element(weights_.begin(), weights_.end());
-  programme_.F.block(programme_.objective_rows, 0, dof_, dof_).diagonal().setConstant(
-      std::sqrt(options_.regularisation * least));
-  programme_.t.segment(programme_.objective_rows, dof_).setZero();
-  programme_.objective_rows += dof_;
+  programme_.ridge.head(dof_).setConstant(std::sqrt(options_.regularisation * least));
+  programme_.reference.head(dof_).setZero();
 }
 
-void WeightedQp::addRowConstraints(const WhitenedProblem& whitened) {
+void WeightedQp::addEqualities(const WhitenedProblem& whitened) {
+  for (int j = 0; j < whitened.firstInequality(); ++j)
+    if (roles_[j] == Role::force) programme_.row(newRow(0, 0, j)).head(dof_) = whitened.row(j);
+}
+
+void WeightedQp::addInequalities(const WhitenedProblem& whitened) {
   for (int j = 0; j < whitened.rowCount(); ++j) {
     const bool inequality = j >= whitened.firstInequality() || roles_[j] == Role::backing_off;
-    if (roles_[j] == Role::dropped) continue;
-    if (inequality) {
-      newInequality(0, j).head(dof_) = whitened.row(j).transpose();
-    } else if (roles_[j] == Role::force) {
-      auto row = programme_.E.row(programme_.equality_rows++).head(programme_.variables);
-      row.setZero();
-      row.head(dof_) = whitened.row(j).transpose();
-    }
+    if (inequality && roles_[j] != Role::dropped) programme_.row(newRow(-no_bound, 0, j)).head(dof_) = whitened.row(j);
+  }
+}
+
+// Rows so far multiply y = L⁻¹ τ; now τ: a L⁻¹, by back substitution for all of them at once.
+void WeightedQp::toCoordinates(const WhitenedProblem& whitened) {
+  const auto& L = whitened.massFactor();
+  auto rows = programme_.A.leftCols(programme_.rows);
+  for (int i = dof_ - 1; i >= 0; --i) {
+    for (int k = i + 1; k < dof_; ++k)
+      if (L(k, i) != 0) rows.row(i) -= L(k, i) * rows.row(k);
+    rows.row(i) /= L(i, i);
   }
 }
 
 void WeightedQp::addTorqueLimits(const TickProblem& problem, const WhitenedProblem& whitened) {
-  for (int i = 0; i < dof_; ++i)
-    for (const double sign : {1.0, -1.0}) {
-      const double bound = sign > 0 ? problem.torque_limits->upper[i] : -problem.torque_limits->lower[i];
-      if (!std::isfinite(bound)) continue;
-      auto row = newInequality(bound, -1);
-      row.head(i + 1) = sign * whitened.massFactor().row(i).head(i + 1);
-      for (int j = 0; j < whitened.rowCount(); ++j) {
-        if (variables_[j] < 0) continue;
-        const ActiveRow& at = whitened.origin(j);
-        row[variables_[j]] =
-            sign * problem.levels[at.level].tasks[at.task].jacobian(at.row, i) / forceScale(whitened, j);
-      }
-      normaliseLast();
-    }
+  const int first = programme_.rows;
+  for (int i = 0; i < dof_; ++i) newRow(problem.torque_limits->lower[i], problem.torque_limits->upper[i], -1);
+  auto rows = programme_.A.middleCols(first, dof_);
+  if (torqueCoordinates())
+    rows.topRows(dof_).diagonal().setOnes();
+  else
+    rows.topRows(dof_) = whitened.massFactor().triangularView<Eigen::Lower>().transpose();
+  for (int j = 0; j < whitened.rowCount(); ++j) {
+    if (variables_[j] < 0) continue;
+    const ActiveRow& at = whitened.origin(j);
+    rows.row(variables_[j]) =
+        problem.levels[at.level].tasks[at.task].jacobian.row(at.row) / forceScale(whitened, j);
+  }
 }
 
 void WeightedQp::addForceBounds(const TickProblem& problem, const WhitenedProblem& whitened) {
+  const double half_angle = std::numbers::pi / options_.friction_edges;
   for (int j = 0; j < whitened.rowCount(); ++j) {
     if (variables_[j] < 0) continue;
     const ActiveRow& at = whitened.origin(j);
     const TickTask& task = problem.levels[at.level].tasks[at.task];
     const int place = task.friction ? at.row % rows_per_friction_contact : 0;
     if (place != 0) continue;
-    newInequality(0, -1)[variables_[j]] = -1;
-    if (std::isfinite(task.force_max)) newInequality(task.force_max * forceScale(whitened, j), -1)[variables_[j]] = 1;
+    programme_.row(newRow(0, task.force_max * forceScale(whitened, j), -1))[variables_[j]] = 1;
     if (!task.friction) continue;
-    for (const double s1 : {1.0, -1.0})
-      for (const double s2 : {1.0, -1.0}) {
-        auto row = newInequality(0, -1);
-        row[variables_[j]] = -*task.friction / forceScale(whitened, j);
-        row[variables_[j] + 1] = s1 / forceScale(whitened, j + 1);
-        row[variables_[j] + 2] = s2 / forceScale(whitened, j + 2);
-        normaliseLast();
-      }
+    for (int edge = 0; edge < options_.friction_edges; ++edge) {
+      // The side between two edges: its normal points half an angle further, at cos(half angle) of their distance.
+      const double angle = (2 * edge + 1) * half_angle;
+      auto row = programme_.row(newRow(-no_bound, 0, -1));
+      row[variables_[j]] = -*task.friction * std::cos(half_angle) / forceScale(whitened, j);
+      row[variables_[j] + 1] = std::cos(angle) / forceScale(whitened, j + 1);
+      row[variables_[j] + 2] = std::sin(angle) / forceScale(whitened, j + 2);
+    }
   }
 }
 
-Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> WeightedQp::newInequality(double bound, int origin) {
-  const int row = programme_.inequality_rows++;
-  programme_.h[row] = bound;
-  inequality_origins_[row] = origin;
-  programme_.G.row(row).head(programme_.variables).setZero();
-  return programme_.G.row(row).head(programme_.variables);
-}
-
-void WeightedQp::normaliseLast() {
-  const int row = programme_.inequality_rows - 1;
-  const double norm = programme_.G.row(row).head(programme_.variables).norm();
-  programme_.G.row(row).head(programme_.variables) /= norm;
-  programme_.h[row] /= norm;
+int WeightedQp::newRow(double lower, double upper, int origin) {
+  const int row = programme_.rows++;
+  programme_.lower[row] = lower;
+  programme_.upper[row] = upper;
+  origins_[row] = origin;
+  programme_.row(row).setZero();
+  return row;
 }
 
 int WeightedQp::answer(const TickProblem& problem, const WhitenedProblem& whitened, const Eigen::VectorXd& x,
                        Eigen::VectorXd& torque, Eigen::VectorXd& forces) const {
-  torque.noalias() = whitened.massFactor().triangularView<Eigen::Lower>() * x.head(dof_);
+  if (torqueCoordinates())
+    torque = x.head(dof_);
+  else
+    torque.noalias() = whitened.massFactor().triangularView<Eigen::Lower>() * x.head(dof_);
   // Equality and inequality contacts may alternate in the problem: each force finds its place by its origin.
   int count = 0;
   for (std::size_t i = 0; i < problem.levels.size(); ++i)

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "framework/control/constrained_least_squares.h"
 #include "framework/control/tick_problem.h"
 #include "framework/control/whitened_problem.h"
+#include "plugins/qp/programme.h"
 
 namespace tactus::qp {
 
@@ -23,11 +23,13 @@ struct WeightedQpOptions {
   double weight_ratio = 100;                                       ///< from a level to the next, where none is given
   double force_weight = 1;                                         ///< w_f
   double regularisation = 0.01;                                    ///< w_r over the least level weight
+  int friction_edges = 4;                                          ///< sides of the pyramid inside a friction cone
 };
 
-/// The weighted quadratic programme 5.3.5–5.3.10 of a tick, in whitened reduced variables x = (y, φ): τ_s = L y is the
-/// torque of all tasks that are not contacts, φ_j = ‖J_j‖ f_j are contact forces measured, as y is, by what they do in
-/// the M⁻¹ metric; τ = τ_s + J_cᵀ f.
+/// The weighted quadratic programme 5.3.5–5.3.10 of a tick, in reduced variables x = (y, φ): τ_s = L y is the torque
+/// of all tasks that are not contacts, whitened; φ_j = ‖J_j‖ f_j are contact forces measured, as y is, by what they do
+/// in the M⁻¹ metric; τ = τ_s + J_cᵀ f.  The thesis's torque objective in the metric `identity` takes y = τ_s instead:
+/// there its Hessian is diagonal.
 ///
 ///   torque:        w ‖τ_s − Σ τ°_i‖² + w_f ‖f − f_ref‖²,  w = 1/Σ(1/w_i): the sum over levels in closed form;
 ///   acceleration:  Σ w_i ‖J_i M⁻¹ τ_s − a_i‖² + w_f ‖f − f_ref‖² + w_r τ_sᵀ M⁻¹ τ_s,
@@ -38,7 +40,8 @@ struct WeightedQpOptions {
 /// square is then an acceleration's energy, whatever units and whichever limb the row has.
 ///
 /// Constraints: J M⁻¹ τ_s = 0 for equality contacts, ≤ 0 for inequality rows; torque limits;
-/// 0 ≤ f ≤ f_max, and for contacts with friction |f_t₁| + |f_t₂| ≤ μ f_n, the pyramid inside the cone.
+/// 0 ≤ f ≤ f_max, and for contacts with friction the pyramid with `friction_edges` edges inside the cone, its edges at
+/// f_t = μ f_n (cos θ, sin θ), θ = 2πk/edges.
 /// A contact whose reference is negative counts as an inequality row, with its force in τ°.
 class WeightedQp {
  public:
@@ -46,15 +49,16 @@ class WeightedQp {
 
   void build(const control::TickProblem& problem, const control::WhitenedProblem& whitened);
 
-  const control::ConstrainedLeastSquares& programme() const { return programme_; }
-  /// The row of the whitened problem behind an inequality row, or -1 for a limit.
-  int inequalityOrigin(int row) const { return inequality_origins_[row]; }
+  const Programme& programme() const { return programme_; }
+  /// The row of the whitened problem behind a row of the programme, or -1 for a limit.
+  int origin(int row) const { return origins_[row]; }
+  bool isEquality(int row) const { return programme_.lower[row] == programme_.upper[row]; }
   /// τ = L y + J_cᵀ f, and the forces of all contact rows in the order of the problem; returns their number.
   int answer(const control::TickProblem& problem, const control::WhitenedProblem& whitened, const Eigen::VectorXd& x,
              Eigen::VectorXd& torque, Eigen::VectorXd& forces) const;
 
   static int variableCapacity(const control::TickProblem& shape);
-  static int inequalityCapacity(const control::TickProblem& shape);
+  static int rowCapacity(const control::TickProblem& shape, const WeightedQpOptions& options);
   static int objectiveCapacity(const control::TickProblem& shape);
 
  private:
@@ -64,22 +68,23 @@ class WeightedQp {
   void addObjective(const control::TickProblem& problem, const control::WhitenedProblem& whitened);
   void addTorqueObjective(const control::WhitenedProblem& whitened);
   void addAccelerationObjective(const control::TickProblem& problem, const control::WhitenedProblem& whitened);
-  void addRowConstraints(const control::WhitenedProblem& whitened);
+  void addEqualities(const control::WhitenedProblem& whitened);
+  void addInequalities(const control::WhitenedProblem& whitened);
+  void toCoordinates(const control::WhitenedProblem& whitened);
   void addTorqueLimits(const control::TickProblem& problem, const control::WhitenedProblem& whitened);
   void addForceBounds(const control::TickProblem& problem, const control::WhitenedProblem& whitened);
-  Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> newInequality(double bound, int origin);
-  void normaliseLast();
+  int newRow(double lower, double upper, int origin);
+  bool torqueCoordinates() const;
+  double forceScale(const control::WhitenedProblem& whitened, int j) const;
 
   WeightedQpOptions options_;
   int dof_;
   int force_count_ = 0;
-  control::ConstrainedLeastSquares programme_;
+  Programme programme_;
   std::vector<double> weights_;                                    // of levels
   std::vector<Role> roles_;                                        // of the whitened problem's rows
   std::vector<int> variables_;                                     // index into x of a row's force, or -1
-  std::vector<int> inequality_origins_;
-  double forceScale(const control::WhitenedProblem& whitened, int j) const;
-
+  std::vector<int> origins_;
   Eigen::MatrixXd own_;                                            // y°_i without the forces that are variables
   std::vector<bool> has_own_;
 };

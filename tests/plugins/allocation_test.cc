@@ -1,9 +1,12 @@
-// A solve of the cascade takes no memory: counted on random problems of one shape whose rows come and go.
+// A solve of the own back ends takes no memory: counted on random problems of one shape whose rows come and go.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 
+#include "plugins/hqp/hqp.h"
 #include "plugins/null-space/null_space.h"
+#include "plugins/qp/solvers.h"
 #include "tests/dynamics/allocation_count.h"
 #include "tests/plugins/random_problem.h"
 
@@ -19,7 +22,7 @@ TEST(Allocation, TheCountSeesBothKindsOfMemory) {
 
 TEST(Allocation, ASolveOfTheCascadeTakesNone) {
   test::ProblemSource source(31);
-  for (const Cascade cascade : {Cascade::augmented, Cascade::successive})
+  for (const Cascade cascade : {Cascade::augmented, Cascade::successive, Cascade::consistent})
     for (const Inequalities inequalities : {Inequalities::exact, Inequalities::one_pass})
       for (int k = 0; k < 100; ++k) {
         // A wide fade, so that singular directions are computed too.
@@ -39,6 +42,41 @@ TEST(Allocation, ASolveOfTheCascadeTakesNone) {
         ASSERT_EQ(dynamics::allocationCount(), before);
         EXPECT_EQ(solution.status, control::Status::failed);
       }
+}
+
+void expectNoAllocation(const std::function<std::unique_ptr<control::BackEnd>()>& make, unsigned seed) {
+  test::ProblemSource source(seed);
+  for (int k = 0; k < 200; ++k) {
+    control::TickProblem problem = source.contactProblem({.max_levels = 4, .max_rows = 6}, 0.2, 0.3);
+    if (k % 2 == 0) problem.torque_limits = source.limits(problem.dof, 1);
+    if (k % 4 == 0) problem.torque_limits->priority = problem.levels.back().priority;
+    const std::unique_ptr<control::BackEnd> back_end = make();
+    control::TickSolution solution;
+    back_end->prepare(problem, solution);
+    if (k % 5 == 0) back_end->setDeadline({.iterations = 3});
+    const long before = dynamics::allocationCount();
+    back_end->solve(problem, solution);
+    for (control::TickLevel& level : problem.levels)
+      for (control::TickTask& task : level.tasks)
+        if (!task.friction) task.rows = (task.rows + 1) / 2;
+    back_end->solve(problem, solution);
+    back_end->solve(problem, solution);
+    ASSERT_EQ(dynamics::allocationCount(), before) << k;
+  }
+}
+
+TEST(Allocation, ASolveOfTheHierarchyTakesNone) {
+  expectNoAllocation([] { return std::make_unique<hqp::Hqp>(); }, 32);
+}
+
+TEST(Allocation, ASolveByTheActiveSetTakesNone) {
+  for (const qp::Objective objective : {qp::Objective::torque, qp::Objective::acceleration})
+    expectNoAllocation(
+        [=] {
+          return std::make_unique<qp::QpBackEnd>(qp::WeightedQpOptions{.objective = objective},
+                                                 qp::makeActiveSetSolver());
+        },
+        33);
 }
 
 }  // namespace

@@ -1,0 +1,269 @@
+// Laws 1, 2, 4, 5, 6 and 9 of the hierarchy on random problems, an independent solver of it, warm starts and deadlines.
+#include "plugins/hqp/hqp.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "framework/control/least_distance.h"
+#include "plugins/null-space/null_space.h"
+#include "plugins/qp/solvers.h"
+#include "tests/plugins/random_problem.h"
+
+namespace tactus::hqp {
+namespace {
+
+using control::Relation;
+using control::Status;
+using control::TickLevel;
+using control::TickProblem;
+using control::TickSolution;
+using control::TickTask;
+using test::ProblemSource;
+using test::RandomProblemOptions;
+
+constexpr double law_tolerance = 1e-9;                             // relative, in the M⁻¹ metric
+constexpr int problems_per_law = 1000;
+
+TickSolution solve(const TickProblem& problem, const HqpOptions& options = {}) {
+  Hqp back_end(options);
+  TickSolution solution;
+  back_end.prepare(problem, solution);
+  back_end.solve(problem, solution);
+  return solution;
+}
+
+// Far enough from the default fade (1e-5 … 1e-3) that no direction is faded and no rank is decided by rounding.
+bool noFade(const TickProblem& problem) { return test::denseRanks(problem, 1e-8, 1e-3).clear; }
+
+RandomProblemOptions equalitiesOnly() { return {.max_dof = 30, .inequality_share = 0, .max_log10_condition = 4}; }
+RandomProblemOptions mixed() {
+  return {.max_dof = 25, .inequality_share = 0.35, .max_log10_condition = 4, .max_log10_scale = 1};
+}
+
+struct Met {
+  int problems = 0;
+  int deficient = 0;
+  int held = 0;
+  double worst = 0;
+
+  void add(const TickSolution& solution) {
+    ++problems;
+    deficient += solution.rank_deficient_levels > 0;
+    held += solution.rows_held;
+  }
+  void difference(double d) { worst = std::max(worst, d); }
+};
+
+TEST(Hqp, Law4IsTheConsistentCascadeOnEqualities) {
+  ProblemSource source(41);
+  Met met;
+  while (met.problems < problems_per_law) {
+    const TickProblem problem = source.problem(equalitiesOnly());
+    if (!noFade(problem)) continue;
+    null_space::NullSpace cascade({.cascade = null_space::Cascade::consistent, .rank = control::dividing_rank});
+    TickSolution expected;
+    cascade.prepare(problem, expected);
+    cascade.solve(problem, expected);
+    const TickSolution solution = solve(problem);
+    ASSERT_EQ(solution.status, Status::ok) << solution.message;
+    met.add(solution);
+    const double size = test::inverseMassNorm(problem, expected.torque);
+    met.difference(test::inverseMassNorm(problem, solution.torque - expected.torque) / size);
+  }
+  std::cout << "worst " << met.worst << ", " << met.deficient << " rank-deficient\n";
+  EXPECT_LE(met.worst, law_tolerance);
+  EXPECT_GE(met.deficient, 100);
+}
+
+TEST(Hqp, Law1And2LowerLevelsChangeNothingAbove) {
+  ProblemSource source(42);
+  Met met;
+  double raised = 0;
+  while (met.problems < problems_per_law) {
+    TickProblem problem = source.problem(mixed());
+    if (!noFade(problem)) continue;
+    const TickSolution solution = solve(problem);
+    ASSERT_EQ(solution.status, Status::ok) << solution.message;
+    met.add(solution);
+    for (int i = 0; i < static_cast<int>(problem.levels.size()); ++i) {
+      const TickSolution alone = solve(test::topLevels(problem, i + 1));
+      ASSERT_EQ(alone.status, Status::ok);
+      const double size = test::inverseMassNorm(problem, solution.torque) + test::inverseMassNorm(problem, alone.torque);
+      const Eigen::VectorXd change = solution.torque - alone.torque;
+      const Eigen::MatrixXd E = test::stackedRows(problem, i, Relation::equality);
+      const Eigen::MatrixXd I = test::stackedRows(problem, i, Relation::inequality);
+      if (E.rows() > 0) met.difference(test::unitAcceleration(problem, E, change).cwiseAbs().maxCoeff() / size);
+      if (I.rows() > 0) raised = std::max(raised, test::unitAcceleration(problem, I, change).maxCoeff() / size);
+    }
+  }
+  std::cout << "changed " << met.worst << ", raised " << raised << ", " << met.held << " rows held, " << met.deficient
+            << " rank-deficient\n";
+  EXPECT_LE(met.worst, law_tolerance);
+  EXPECT_LE(raised, law_tolerance);
+  EXPECT_GE(met.held, 500);
+}
+
+// The hierarchy by another way: at each level, dense and slow, the least-norm point of all that come as near as any can.
+// A point is as good when no row set lets the level come nearer: the optimality of every level is checked by its own
+// conditions, from the constraints that the levels above left.
+TEST(Hqp, EveryLevelIsOptimal) {
+  ProblemSource source(43);
+  Met met;
+  int limited = 0;
+  while (met.problems < problems_per_law) {
+    TickProblem problem = source.problem(mixed());
+    if (!noFade(problem)) continue;
+    if (met.problems % 2) problem.torque_limits = source.limits(problem.dof, 1);
+    const Eigen::LLT<Eigen::MatrixXd> cholesky(problem.mass_matrix);
+    const Eigen::MatrixXd L = cholesky.matrixL();
+    std::vector<Eigen::VectorXd> points;
+    bool held = false;
+    for (std::size_t i = 0; i < problem.levels.size(); ++i) {
+      const TickSolution solution = solve(test::topLevels(problem, static_cast<int>(i) + 1));
+      ASSERT_EQ(solution.status, Status::ok) << solution.message;
+      points.push_back(cholesky.matrixL().solve(solution.torque));
+      held |= solution.rows_held > 0;
+      if (i + 1 == problem.levels.size()) met.add(solution);
+    }
+    limited += problem.torque_limits.has_value();
+    Eigen::MatrixXd E(0, problem.dof), G(0, problem.dof);
+    Eigen::VectorXd h(0);
+    const auto append = [](Eigen::MatrixXd& rows, const Eigen::MatrixXd& more) {
+      rows.conservativeResize(rows.rows() + more.rows(), more.cols());
+      rows.bottomRows(more.rows()) = more;
+    };
+    if (problem.torque_limits) {
+      append(G, L);
+      append(G, -L);
+      h.resize(2 * problem.dof);
+      h << problem.torque_limits->upper, -problem.torque_limits->lower;
+    }
+    for (std::size_t i = 0; i < problem.levels.size(); ++i) {
+      // g = Aᵀ(A y − b) must be −Eᵀν − Gᵀλ with λ ≥ 0 on rows at their bounds.
+      const Eigen::VectorXd& y = points[i];
+      Eigen::VectorXd own = Eigen::VectorXd::Zero(problem.dof);
+      for (const TickTask& task : problem.levels[i].tasks) own += task.J().transpose() * task.F();
+      const Eigen::VectorXd own_y = cholesky.matrixL().solve(own);
+      Eigen::VectorXd gradient = Eigen::VectorXd::Zero(problem.dof);
+      double size = y.norm();
+      for (const TickTask& task : problem.levels[i].tasks)
+        for (int r = 0; r < task.rows; ++r) {
+          if (task.relation == Relation::inequality && task.force[r] == 0) continue;
+          Eigen::VectorXd a = cholesky.matrixL().solve(task.jacobian.row(r).transpose());
+          const double norm = a.norm();
+          if (norm == 0) continue;
+          a /= norm;
+          const double wanted = task.has_acceleration ? task.acceleration[r] / norm : a.dot(own_y);
+          gradient += (a.dot(y) - wanted) * a;
+          size += std::abs(wanted);
+        }
+      std::vector<Eigen::VectorXd> cone;
+      for (int j = 0; j < G.rows(); ++j) {
+        const double norm = G.row(j).norm();
+        const double slack = (h[j] - G.row(j).dot(y)) / norm;
+        EXPECT_GE(slack, -1e-8 * size);
+        if (slack <= 1e-7 * size) cone.push_back(G.row(j).transpose() / norm);
+      }
+      for (int j = 0; j < E.rows(); ++j)
+        for (const double sign : {1.0, -1.0}) cone.push_back(sign * E.row(j).transpose().normalized());
+      // What is left of −g when the nearest point of the cone is taken off is the nearest point of the polar cone.
+      control::RowMajorMatrix rows(problem.dof, cone.size());
+      for (std::size_t j = 0; j < cone.size(); ++j) rows.col(j) = cone[j];
+      control::LeastDistance polar(problem.dof, static_cast<int>(cone.size()));
+      const Eigen::VectorXd zero = Eigen::VectorXd::Zero(cone.size());
+      ASSERT_EQ(polar.solve(rows, zero, -gradient), control::LeastDistance::Outcome::solved);
+      met.difference(Eigen::VectorXd(polar.x()).norm() / size);
+
+      const Eigen::MatrixXd next = test::stackedRows(problem, static_cast<int>(i), Relation::equality);
+      if (next.rows() > 0) append(E, test::unitRows(problem, next));
+      const Eigen::MatrixXd bounds = test::stackedRows(problem, static_cast<int>(i), Relation::inequality);
+      if (bounds.rows() > 0) {
+        const Eigen::MatrixXd unit = test::unitRows(problem, bounds);
+        append(G, unit);
+        h.conservativeResize(G.rows());
+        h.tail(unit.rows()) = unit * y;
+      }
+    }
+  }
+  std::cout << "worst gradient " << met.worst << ", " << met.held << " rows held, " << limited << " with limits\n";
+  EXPECT_LE(met.worst, 1e-7);
+  EXPECT_GE(limited, 400);
+}
+
+TEST(Hqp, Law6TheOrderOfTasksChangesNothing) {
+  ProblemSource source(44);
+  Met met;
+  while (met.problems < problems_per_law) {
+    TickProblem problem = source.problem(mixed());
+    if (!noFade(problem)) continue;
+    const TickSolution first = solve(problem);
+    met.add(first);
+    for (TickLevel& level : problem.levels) std::reverse(level.tasks.begin(), level.tasks.end());
+    const TickSolution second = solve(problem);
+    const double size = test::inverseMassNorm(problem, first.torque);
+    met.difference(test::inverseMassNorm(problem, first.torque - second.torque) / size);
+  }
+  std::cout << "worst " << met.worst << "\n";
+  EXPECT_LE(met.worst, 1e-7);
+}
+
+TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {
+  ProblemSource source(45);
+  long cold_steps = 0, warm_steps = 0;
+  double worst = 0;
+  for (int k = 0; k < 300; ++k) {
+    TickProblem problem = source.problem(mixed());
+    problem.torque_limits = source.limits(problem.dof, 0.5);
+    if (!noFade(problem)) continue;
+    Hqp warm;
+    TickSolution solution;
+    warm.prepare(problem, solution);
+    warm.solve(problem, solution);
+    for (TickLevel& level : problem.levels)
+      for (TickTask& task : level.tasks) task.force *= 1.001;
+    warm.solve(problem, solution);
+    const TickSolution cold = solve(problem);
+    warm_steps += solution.iterations;
+    cold_steps += cold.iterations;
+    worst = std::max(worst, test::inverseMassNorm(problem, cold.torque - solution.torque) /
+                                test::inverseMassNorm(problem, cold.torque));
+  }
+  std::cout << "steps: cold " << cold_steps << ", warm " << warm_steps << "; worst " << worst << "\n";
+  EXPECT_LE(worst, 1e-7);
+  EXPECT_LT(warm_steps, cold_steps / 2);
+}
+
+TEST(Hqp, Law9EveryTickIsFiniteAndWithinLimitsInBoundedWork) {
+  ProblemSource source(46);
+  int infeasible = 0, late = 0;
+  RandomProblemOptions shape = mixed();
+  shape.max_log10_scale = 3;
+  shape.max_log10_condition = 6;
+  shape.max_dof = 50;
+  for (int k = 0; k < problems_per_law; ++k) {
+    TickProblem problem = source.problem(shape);
+    problem.torque_limits = source.limits(problem.dof, 1);
+    if (source.chance(0.5)) problem.torque_limits->priority = problem.levels.back().priority;
+    if (source.chance(0.2)) problem.torque_limits->lower[0] = problem.torque_limits->upper[0];
+    Hqp back_end;
+    TickSolution solution;
+    back_end.prepare(problem, solution);
+    if (source.chance(0.3)) back_end.setDeadline({.iterations = source.integer(0, 5)});
+    back_end.solve(problem, solution);
+    ASSERT_TRUE(solution.torque.allFinite());
+    EXPECT_TRUE((solution.torque.array() <= problem.torque_limits->upper.array()).all());
+    EXPECT_TRUE((solution.torque.array() >= problem.torque_limits->lower.array()).all());
+    EXPECT_TRUE(solution.status != Status::failed || solution.late) << solution.message;
+    infeasible += solution.status == Status::infeasible;
+    late += solution.late;
+  }
+  std::cout << infeasible << " infeasible, " << late << " late\n";
+  EXPECT_GE(infeasible, 50);
+  EXPECT_GE(late, 20);
+}
+
+}  // namespace
+}  // namespace tactus::hqp
