@@ -17,6 +17,10 @@ CapsuleKeeper::CapsuleKeeper(const Session& session, const std::string& folder)
 
 void CapsuleKeeper::observe(const runtime::ObservedTick& tick) {
   const control::TickRecord& record = tick.controller.record();
+  if (record.sensing.blind) {                                      // the back end was not asked: its problem is an older tick's
+    ++tick_;
+    return;
+  }
   const bool failed = record.fallback || record.status != control::Status::ok || tick.controller.solution().late;
   const bool room = static_cast<int>(files_.size()) < most_capsules && warnings_.empty();
   if (record.status == control::Status::infeasible && !infeasible_) {

@@ -224,6 +224,7 @@ std::string xrayText(const JsonPlace& xray) {
 }
 
 void XrayKeeper::observe(const runtime::ObservedTick& tick) {
+  if (tick.controller.record().sensing.blind) return;              // there was no problem
   const control::TickProblem& problem = tick.controller.problem();
   const control::TickSolution& solution = tick.controller.solution();
   last_time_ = tick.sensed.time;
