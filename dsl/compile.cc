@@ -95,6 +95,10 @@ class Compiler {
         continue;
       }
     }
+    if (back_end && stack_.controller.values.has("torque-limits-priority") && !back_end->abilities().limits_at_levels)
+      errors_.addAt(code::lacking_ability, stack_.controller, "torque-limits-priority",
+                    backEndName() + " cannot put torque limits at a level" +
+                        whoCould([](const control::Abilities& a) { return a.limits_at_levels; }));
     auto levels = makeLevels(back_end ? &back_end->abilities() : nullptr);
     errors_.throwIfAny();
     try {
@@ -217,6 +221,7 @@ class Compiler {
     options.ramp = values.real("ramp");
     options.hold = values.real("hold");
     if (values.has("deadline-iterations")) options.deadline.iterations = values.integer("deadline-iterations");
+    if (values.has("torque-limits-priority")) options.limits_priority = values.integer("torque-limits-priority");
     if (values.has("deadline-us")) options.deadline.seconds = 1e-6 * values.real("deadline-us");
     return options;
   }
@@ -272,19 +277,44 @@ class Compiler {
     const std::string reason = abilities.why_not_strict.empty()
                                    ? "weighs levels against each other: it cannot keep one strictly"
                                    : "cannot keep this level strictly: " + abilities.why_not_strict;
-    errors_.add(code::lacking_ability, level.strict_place, 4, "", backEndName() + " " + reason);
+    errors_.add(code::lacking_ability, level.strict_place, 4, "",
+                backEndName() + " " + reason + whoCould([first](const control::Abilities& a) {
+                  return a.strict_levels || (first && a.strict_first_level);
+                }));
   }
 
   void checkAbilities(const ElementInstance& element, const control::Task& task, const control::Abilities& abilities) {
     if (task.relation() == control::Relation::inequality && !abilities.inequalities)
       errors_.addAt(code::lacking_ability, element, "",
-                    "<" + element.values.row().name + "> is an inequality, and " + backEndName() + " honours none");
+                    "<" + element.values.row().name + "> is an inequality, and " + backEndName() + " honours none" +
+                        whoCould([](const control::Abilities& a) { return a.inequalities; }));
     const auto asked = [&](const char* attribute) {
       return task.isContact() && element.values.has(attribute) &&
              element.values.value(attribute).origin.kind != control::Origin::Kind::table_default;
     };
     if (asked("friction") && !abilities.friction_cones)
-      errors_.addAt(code::lacking_ability, element, "friction", backEndName() + " honours no friction cones");
+      errors_.addAt(code::lacking_ability, element, "friction",
+                    backEndName() + " honours no friction cones" +
+                        whoCould([](const control::Abilities& a) { return a.friction_cones; }));
+    if (asked("force-max") && !abilities.force_bounds)
+      errors_.addAt(code::lacking_ability, element, "force-max",
+                    backEndName() + " honours no bounds of contact forces" +
+                        whoCould([](const control::Abilities& a) { return a.force_bounds; }));
+  }
+
+  /// "; hqp could": the back ends that, with their defaults, have an ability.
+  template <class Predicate>
+  std::string whoCould(Predicate able) const {
+    std::string names;
+    for (const std::string& name : registry_.names(control::ElementKind::back_end)) {
+      try {
+        const std::unique_ptr<control::BackEnd> back_end =
+            registry_.makeBackEnd(control::makeValues(*registry_.elements().findBackEnd(name)));
+        if (able(back_end->abilities())) names += (names.empty() ? "" : ", ") + name;
+      } catch (const std::exception&) {                            // one that needs options: nothing is known of it
+      }
+    }
+    return names.empty() ? "" : "; it could be: " + names;
   }
 
   std::string backEndName() const { return "back end '" + stack_.back_end.row().name + "'"; }

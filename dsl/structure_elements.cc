@@ -197,6 +197,10 @@ ElementRow controllerRow() {
                          {.name = "deadline-iterations", .type = ValueType::integer, .unit = "1",
                           .description = "Iterations that the back end may take for a tick; not given: any number.",
                           .lower = 1},
+                         {.name = "torque-limits-priority", .type = ValueType::integer,
+                          .description = "Level at which the actuators' limits stand, above its tasks; not given: above "
+                                         "all levels. Back ends with strict levels and limits alone (hqp).",
+                          .lower = 1},
                          {.name = "deadline-us", .type = ValueType::real, .unit = "µs",
                           .description = "Wall-clock time that the back end may take for a tick; runs then need not "
                                          "repeat. Not given: any time.",

@@ -26,6 +26,8 @@ void ContactForce::registerIn(Registry& registry) {
        .description = "Time constant of the filter on the measured excess.", .lower = 0},
       {.name = "min-force", .type = ValueType::real, .unit = "N", .default_text = "-3",
        .description = "The feedback takes the reference no lower than this."},
+      {.name = "force-max", .type = ValueType::real, .unit = "N",
+       .description = "Most force of a contact, for back ends that bound forces; not given: none.", .lower = 0},
   };
   registry.addTask(row, [](const BuildContext& context) { return std::make_unique<ContactForce>(context); });
 }
@@ -38,12 +40,14 @@ ContactForce::ContactForce(const BuildContext& context)
       min_force_(context.values.real("min-force")),
       excess_(context.values.real("feedback-threshold"), context.values.real("feedback-filter"),
               context.model.frames().size()) {
+  if (context.values.has("force-max")) force_max_ = context.values.real("force-max");
   if (min_force_ > force_) throw ElementError("min-force", "min-force must not be greater than force");
 }
 
 void ContactForce::doUpdate(const Tick& tick, TickTask& rows) {
   excess_.beginTick();
   rows.rows = static_cast<int>(contacts_.contacts.size());
+  rows.force_max = force_max_;
   lowest_reference_ = force_;
   error_ = 0;
   for (int i = 0; i < rows.rows; ++i) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include <vector>
 
 #include "framework/control/registry.h"
@@ -25,6 +27,7 @@ class ContactForce final : public control::Task {
 
   const control::ContactSet& contacts_;
   double force_, feedback_, min_force_;
+  double force_max_ = std::numeric_limits<double>::infinity();
   ForceExcess excess_;                                             ///< over f_t
   double lowest_reference_ = 0;
 };

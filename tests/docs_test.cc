@@ -85,6 +85,22 @@ TEST(Docs, EveryStackShownPassesCheckAndReadsBackResolved) {
   EXPECT_GE(checked, 2);
 }
 
+/// Blocks of `console`: what follows a "$ tactus …" is what it prints, from the project's folder.
+TEST(Docs, WhatCommandsPrintIsWhatThePagesShow) {
+  int commands = 0;
+  for (const fs::path& page : pages()) {
+    for (const std::string& block : blocks(page, "console")) {
+      ASSERT_EQ(block.rfind("$ tactus ", 0), 0u) << page << ":\n" << block;
+      const size_t end = block.find('\n');
+      std::string said;
+      shell("cd " TACTUS_SOURCE_DIR " && " + kProgram + block.substr(8, end - 8), &said);
+      EXPECT_EQ(said, block.substr(end + 1)) << page;
+      ++commands;
+    }
+  }
+  EXPECT_GE(commands, 4);
+}
+
 /// README's first stack settles: no torque is cut, and all back ends that it names agree.
 TEST(Docs, TheFirstStackIsStable) {
   const tactus::testing::TemporaryFolder folder;

@@ -19,6 +19,7 @@ struct Abilities {
   bool friction_cones = false;
   bool strict_first_level = false;                                 ///< the first level is, even without strict_levels
   std::string why_not_strict = {};                                 ///< said where a level asks to be strict and is not
+  bool limits_at_levels = false;                                   ///< TorqueLimits::priority
 };
 
 /// How much work one tick may take.  A back end that comes to its end leaves what it has: status `failed`, `late`, and

@@ -47,7 +47,8 @@ void checkRows(const TickTask& rows, int capacity, int dof) {
   }
 }
 
-TickProblem makeProblemShape(const dynamics::Model& model, const std::vector<Level>& levels) {
+TickProblem makeProblemShape(const dynamics::Model& model, const std::vector<Level>& levels,
+                             std::optional<int> limits_priority) {
   const int dof = model.dof();
   TickProblem problem;
   problem.dof = dof;
@@ -55,6 +56,7 @@ TickProblem makeProblemShape(const dynamics::Model& model, const std::vector<Lev
   TorqueLimits limits;
   limits.lower = -model.effort();
   limits.upper = model.effort();
+  limits.priority = limits_priority;
   problem.torque_limits = limits;
   for (const Level& level : levels) {
     TickLevel& shape = problem.levels.emplace_back();
@@ -82,7 +84,7 @@ Controller::Controller(std::shared_ptr<const dynamics::Model> model, std::vector
       options_(options),
       cache_(*model_, gravity_W),
       sensing_(model_->dof(), static_cast<int>(model_->frames().size()), options.hold, period),
-      problem_(makeProblemShape(*model_, levels_)),
+      problem_(makeProblemShape(*model_, levels_, options.limits_priority)),
       shaper_(model_->effort(), options.torque_rate, period),
       wanted_(Eigen::VectorXd::Zero(model_->dof())),
       last_solved_(Eigen::VectorXd::Zero(model_->dof())) {

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -38,6 +39,7 @@ struct ControllerOptions {
   double ramp = 0.1;                                               ///< s, of setWeight, setPriority, setBackEnd
   double hold = 0.02;                                              ///< s, that last good values stand in
   Deadline deadline = {};                                          ///< of every back end that it is given
+  std::optional<int> limits_priority = {};                         ///< TorqueLimits::priority
 };
 
 /// A task, signal or back end that threw, or broke its promise, in a tick; the message names it and the time.

@@ -46,7 +46,8 @@ PriorityFactor::PriorityFactor(int dimension, int column_capacity, int stage_cap
       order_(column_capacity),
       sigma_(dimension),
       tall_(column_capacity, dimension),
-      target_(column_capacity) {
+      target_(column_capacity),
+      row_weights_(column_capacity) {
   for (Memory& memory : memories_) {
     memory.v.setZero(dimension, dimension);
     memory.beta.setZero(dimension);
@@ -267,31 +268,37 @@ void PriorityFactor::embed(ColumnsRef columns) {
   for (int stage = stage_count_ - 1; stage >= 0; --stage) turnBack(stage, columns);
 }
 
-// Three forms of S.  The stage's columns are Q R P with R (r × count) upper trapezoidal.  Independent rows: S = Rᵀ.
-// Dependent rows: Rᵀ = Q' T, S = T.  Singular directions, G = Uᵀ R with orthogonal rows: S = diag(σ).
+// The stage's columns are Q R P, R (r × count) upper trapezoidal.  Independent rows: S = W Rᵀ.  Dependent rows, or
+// singular directions, G = Uᵀ R: W Rᵀ (W Gᵀ) = Q' T, S = T.
 void PriorityFactor::leastSquares(const ConstColumnsRef& columns, const Eigen::Ref<const Eigen::VectorXd>& b,
-                                  VectorRef z) {
+                                  const Eigen::Ref<const Eigen::VectorXd>& W, VectorRef z) {
   const Memory& memory = memories_[stage_count_ - 1];
   const int first = memory.stage.first;
-  const int r = memory.reflections;
+  const int held = memory.stage.held;
   const int count = static_cast<int>(columns.cols());
   z.setZero();
   auto target = target_.head(count);
-  for (int j = 0; j < count; ++j) target[j] = b[order_[j]];
-  if (memory.rotated) {
-    for (int i = 0; i < memory.stage.rank; ++i)
-      z[first + i] = fadeWeight(sigma_[i], options_) * triangle_.row(i).head(count).dot(target) / (sigma_[i] * sigma_[i]);
-    return;
+  auto weights = row_weights_.head(count);
+  const double heaviest = count > 0 ? W.head(count).maxCoeff() : 1;
+  for (int j = 0; j < count; ++j) {
+    weights[j] = W[order_[j]] / heaviest;
+    target[j] = weights[j] * b[order_[j]];
   }
-  if (count > r) {
-    for (int i = 0; i < r; ++i) tall_.col(i).head(count) = columns.row(first + i).transpose();
-    for (int i = 0; i < r; ++i) {                                  // column i of Rᵀ is 0 above the diagonal
+  if (memory.rotated || count > memory.reflections) {
+    for (int i = 0; i < held; ++i) {
+      if (memory.rotated)
+        tall_.col(i).head(count) = triangle_.row(i).head(count).transpose();
+      else
+        tall_.col(i).head(count) = columns.row(first + i).transpose();
+      tall_.col(i).head(count).array() *= weights.array();
+    }
+    for (int i = 0; i < held; ++i) {
       auto v = tall_.col(i).segment(i, count - i);
       const double norm = v.norm();
       const double head = std::copysign(norm, v[0]);
       v[0] += head;
       const double beta = 1 / (norm * std::abs(v[0]));
-      for (int k = i + 1; k < r; ++k) {
+      for (int k = i + 1; k < held; ++k) {
         auto column = tall_.col(k).segment(i, count - i);
         column -= beta * v.dot(column) * v;
       }
@@ -300,27 +307,39 @@ void PriorityFactor::leastSquares(const ConstColumnsRef& columns, const Eigen::R
       tall_(i, i) = -head;                                         // below it v, which is not needed again
     }
   }
-  z.segment(first, r) = target.head(r);
+  z.segment(first, held) = target.head(held);
   fromMetric(columns, z);
+  if (held == memory.stage.rank) return;
+  // Each faded direction alone, of what the held ones leave.
+  for (int j = 0; j < count; ++j)
+    target[j] = b[order_[j]] - triangle_.col(j).head(held).dot(z.segment(first, held));
+  for (int i = held; i < memory.stage.rank; ++i) {
+    double along = 0, square = 0;
+    for (int j = 0; j < count; ++j) {
+      const double row = weights[j] * triangle_(i, j);
+      along += row * weights[j] * target[j];
+      square += row * row;
+    }
+    z[first + i] = fadeWeight(sigma_[i], options_) * along / square;
+  }
 }
 
 void PriorityFactor::toMetric(const ConstColumnsRef& columns, ColumnsRef rows) const {
   const Memory& memory = memories_[stage_count_ - 1];
   const int first = memory.stage.first;
   const int held = memory.stage.held;
-  if (memory.rotated) {
-    for (int i = 0; i < held; ++i) rows.row(first + i) /= sigma_[i];
-  } else if (columns.cols() > memory.reflections) {                // T⁻ᵀ
+  if (memory.rotated || columns.cols() > memory.reflections) {     // T⁻ᵀ
     for (int i = 0; i < held; ++i) {
       for (int k = 0; k < i; ++k) rows.row(first + i) -= tall_(k, i) * rows.row(first + k);
       rows.row(first + i) /= tall_(i, i);
     }
-  } else {                                                         // R⁻¹
+  } else {                                                         // W⁻¹ R⁻¹
     for (int i = held - 1; i >= 0; --i) {
       for (int k = i + 1; k < held; ++k)
         if (columns(first + i, k) != 0) rows.row(first + i) -= columns(first + i, k) * rows.row(first + k);
       rows.row(first + i) /= columns(first + i, i);
     }
+    for (int i = 0; i < held; ++i) rows.row(first + i) /= row_weights_[i];
   }
 }
 
@@ -329,15 +348,14 @@ void PriorityFactor::fromMetric(const ConstColumnsRef& columns, VectorRef u) con
   const int first = memory.stage.first;
   const int held = memory.stage.held;
   auto z = u.segment(first, held);
-  if (memory.rotated) {
-    z.array() /= sigma_.head(held).array();
-  } else if (columns.cols() > memory.reflections) {                // T⁻¹
+  if (memory.rotated || columns.cols() > memory.reflections) {     // T⁻¹
     for (int i = held - 1; i >= 0; --i) {
       for (int k = i + 1; k < held; ++k) z[i] -= tall_(i, k) * z[k];
       z[i] /= tall_(i, i);
     }
-  } else {                                                         // R⁻ᵀ
+  } else {                                                         // R⁻ᵀ W⁻¹
     for (int i = 0; i < held; ++i) {
+      z[i] /= row_weights_[i];
       for (int k = 0; k < i; ++k) z[i] -= columns(first + k, i) * z[k];
       z[i] /= columns(first + i, i);
     }

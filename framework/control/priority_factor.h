@@ -51,12 +51,13 @@ class PriorityFactor {
   void dropLastStage() { --stage_count_; }
 
   // Least squares in the directions of the last stage, right after `hold`; `columns` as it left them.  The directions
-  // that it holds are its coordinates z₁; ‖columnsᵀ z − b‖² = ‖S (z₁ − z₁*)‖² + what no z can change, S regular.
+  // that it holds are its coordinates z₁; ‖W (columnsᵀ z − b)‖² = ‖S (z₁ − z₁*)‖² + what no z can change, S regular.
 
-  /// z (dimension) minimises ‖columnsᵀ z − b‖ and is 0 outside of the stage; a faded direction gets the share of its
-  /// weight.  b: one number a column, in the order in which the columns came.
+  /// z (dimension) minimises ‖W (columnsᵀ z − b)‖ and is 0 outside of the stage; a faded direction gets the share of its
+  /// fade.  b and the diagonal of W > 0: one number a column, in the order in which the columns came; W counts by
+  /// its proportions, its largest as 1.
   void leastSquares(const ConstColumnsRef& columns, const Eigen::Ref<const Eigen::VectorXd>& b,
-                    VectorRef z);
+                    const Eigen::Ref<const Eigen::VectorXd>& W, VectorRef z);
   /// Rows g z₁ in the stage's coordinates become rows of u₁ = S z₁: g ← S⁻ᵀ g in the held coordinates.
   void toMetric(const ConstColumnsRef& columns, ColumnsRef rows) const;
   /// z₁ = S⁻¹ u₁, in place in the held coordinates.
@@ -115,8 +116,9 @@ class PriorityFactor {
   // Of the last stage, for least squares.
   Eigen::VectorXi order_;                                          // which column came where
   Eigen::VectorXd sigma_;                                          // falling, where singular directions were computed
-  Eigen::MatrixXd tall_;                                           // QR of Rᵀ where rows are dependent: its triangle T
+  Eigen::MatrixXd tall_;                                           // QR where rows are dependent: its triangle T
   Eigen::VectorXd target_;
+  Eigen::VectorXd row_weights_;
 };
 
 }  // namespace tactus::control

@@ -80,13 +80,14 @@ void WhitenedProblem::toTorque(const Eigen::VectorXd& y, Eigen::VectorXd& torque
 }
 
 int WhitenedProblem::gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y,
-                                     RowMajorMatrix& columns, Eigen::VectorXd& b) const {
+                                     RowMajorMatrix& columns, Eigen::VectorXd& b, Eigen::VectorXd& weights) const {
   const LevelRows& rows = levels_[level];
   int count = 0;
   const auto add = [&](int j) {
     const ActiveRow& at = origins_[j];
     const TickTask& task = problem.levels[at.level].tasks[at.task];
     columns.col(count) = columns_.col(j);
+    weights[count] = norms_[j] > 0 ? norms_[j] : 1;
     b[count] = task.has_acceleration ? (norms_[j] > 0 ? task.acceleration[at.row] / norms_[j] : 0)
                                      : columns_.col(j).dot(own_torques_.col(level));
     b[count++] -= columns_.col(j).dot(y);

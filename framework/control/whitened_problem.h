@@ -54,9 +54,10 @@ class WhitenedProblem {
   /// rows with F ≠ 0; a = J M⁻¹ τ°, or the acceleration that a task asks for.
   void reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution);
   /// What level i asks for, J_i y = a_i in unit rows, with J_i and a_i as above: writes the rows to `columns` (dof ×
-  /// capacity) and a_i − J_i y to `b`; returns their number.  The level's equality rows come first.
+  /// capacity), a_i − J_i y to `b` and the rows' norms, which bring both back to the level's own units, to `weights`;
+  /// returns their number.  The level's equality rows come first.
   int gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, RowMajorMatrix& columns,
-                      Eigen::VectorXd& b) const;
+                      Eigen::VectorXd& b, Eigen::VectorXd& weights) const;
 
  private:
   struct LevelRows {

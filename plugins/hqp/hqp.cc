@@ -84,6 +84,7 @@ class Hqp::Solver {
   int open_rows_ = 0;
   RowMajorMatrix rows_;                                            // of the open stage, as `hold` left them
   Eigen::VectorXd target_;
+  Eigen::VectorXd weights_;                                        // norms of the rows
   RowMajorMatrix column_;                                          // coordinates of a point, dof × 1
   Eigen::VectorXd z_;                                              // of the level, in the open stage's coordinates
   Eigen::VectorXd y_;                                              // τ⁽ⁱ⁾
@@ -130,6 +131,7 @@ Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
       chain_(shape.dof, shape.rowCapacity() + shape.dof, 2 * static_cast<int>(shape.levels.size()) + 2, options.rank),
       rows_(shape.dof, shape.rowCapacity() + shape.dof),
       target_(rows_.cols()),
+      weights_(rows_.cols()),
       column_(shape.dof, 1),
       z_(shape.dof),
       y_(shape.dof),
@@ -318,10 +320,10 @@ Hqp::Solver::Outcome Hqp::Solver::solveLevel(const TickProblem& problem, int lev
 
 // Decomposes what the level asks for, in what the chain leaves; z_ comes nearest to it when nothing else is looked at.
 void Hqp::Solver::openStage(const TickProblem& problem, int level) {
-  open_rows_ = whitened_.gatherObjective(problem, level, base_, rows_, target_);
+  open_rows_ = whitened_.gatherObjective(problem, level, base_, rows_, target_, weights_);
   chain_.advance(open());
   chain_.hold(open());
-  chain_.leastSquares(open(), target_.head(open_rows_), z_);
+  chain_.leastSquares(open(), target_.head(open_rows_), weights_.head(open_rows_), z_);
   if (count_ == 0) return;
   turned_.leftCols(count_) = advanced_.leftCols(count_);
   chain_.turn(stages() - 1, turned_.leftCols(count_));
@@ -471,7 +473,8 @@ void Hqp::Solver::holdAtBounds(const std::vector<int>& signed_rows) {
     target_[i] = (signed_rows[i] > 0 ? upper_[j] : lower_[j]) - at_base_[j];
   }
   chain_.hold(open());
-  chain_.leastSquares(open(), target_.head(open_rows_), z_);
+  weights_.head(open_rows_).setOnes();
+  chain_.leastSquares(open(), target_.head(open_rows_), weights_.head(open_rows_), z_);
   toPoint();
   base_ = y_;
   followBase();
@@ -578,7 +581,8 @@ Hqp::Hqp(const HqpOptions& options)
                .torque_limits = true,
                .force_bounds = true,
                .friction_cones = true,
-               .strict_first_level = true}),
+               .strict_first_level = true,
+               .limits_at_levels = true}),
       options_(options) {}
 
 Hqp::~Hqp() = default;

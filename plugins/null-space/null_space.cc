@@ -24,6 +24,7 @@ struct NullSpace::Workspace {
         rows(shape.dof, shape.rowCapacity()),
         inequalities(shape.dof, shape.rowCapacity()),
         target(shape.rowCapacity()),
+        weights(shape.rowCapacity()),
         torque(shape.dof, 1),
         total(shape.dof) {}
 
@@ -34,6 +35,7 @@ struct NullSpace::Workspace {
   RowMajorMatrix rows;                                             // equality rows on their way into a factor
   RowMajorMatrix inequalities;                                     // taken through the factor's stages
   Eigen::VectorXd target;                                          // what a level asks for, row by row
+  Eigen::VectorXd weights;                                         // and the rows' norms
   RowMajorMatrix torque;                                           // the one that is being projected
   Eigen::VectorXd total;                                           // L⁻¹ τ
   control::LeastDistance::TimePoint end;                           // of this tick's deadline
@@ -107,11 +109,11 @@ void NullSpace::consistent(const TickProblem& problem, TickSolution& solution) {
   work.chain.reset();
   for (int i = 0; i < levels; ++i) {
     // What the level asks for, in the directions that the equality rows above leave.
-    const int count = work.problem.gatherObjective(problem, i, work.total, work.rows, work.target);
+    const int count = work.problem.gatherObjective(problem, i, work.total, work.rows, work.target, work.weights);
     auto wanted = work.rows.leftCols(count);
     work.chain.advance(wanted);
     work.chain.hold(wanted);
-    work.chain.leastSquares(wanted, work.target.head(count), work.torque.col(0));
+    work.chain.leastSquares(wanted, work.target.head(count), work.weights.head(count), work.torque.col(0));
     work.chain.turnBack(i, work.torque);
     work.chain.dropLastStage();
     for (int stage = i - 1; stage >= 0; --stage) work.chain.bringBack(stage, work.torque);

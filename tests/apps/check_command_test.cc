@@ -109,7 +109,7 @@ TEST(CheckCommand, AnotherBackEndIsCheckedInstead) {
   EXPECT_EQ(tactus({"check", data("press.xml"), "--backend", "qp/nlopt"}).exit_code, 0);
   const Outcome outcome = tactus({"check", data("press.xml"), "--backend", "magic"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'magic'; back ends: null-space, qp"));
+  EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'magic'; back ends: hqp, null-space, qp"));
 }
 
 TEST(CheckCommand, WhatRunCannotDoIsNoGoodStack) {
@@ -127,6 +127,18 @@ TEST(CheckCommand, WhatRunCannotDoIsNoGoodStack) {
   EXPECT_THAT(says("duration=\"1\"", "duration=\"1e9\""), HasSubstr("expected a number > 0 and ≤ 1e+06 (s)"));
   EXPECT_THAT(says("duration=\"1\"", "duration=\"0.0001\""),
               HasSubstr(":15:18: error[E014]: attribute 'duration': 1e-04 s is shorter than one tick of 0.001 s"));
+}
+
+TEST(CheckCommand, TorqueLimitsAtALevelAndForceBoundsNeedABackEndThatHasThem) {
+  const TemporaryFolder first, second;
+  const std::string limits = changedStack(first, "<controller ", "<controller torque-limits-priority=\"2\" ");
+  EXPECT_THAT(tactus({"check", limits, "--backend", "null-space"}).err,
+              HasSubstr("back end 'null-space' cannot put torque limits at a level; it could be: hqp"));
+  EXPECT_EQ(tactus({"check", limits, "--backend", "hqp"}).exit_code, 0);
+  const std::string bounded = changedStack(second, "<contact-force ", "<contact-force force-max=\"2\" ");
+  EXPECT_THAT(tactus({"check", bounded, "--backend", "null-space"}).err,
+              HasSubstr("back end 'null-space' honours no bounds of contact forces; it could be: hqp, qp"));
+  EXPECT_EQ(tactus({"check", bounded, "--backend", "qp"}).exit_code, 0);
 }
 
 TEST(CheckCommand, TheSuccessiveCascadeKeepsItsFirstLevelStrictly) {

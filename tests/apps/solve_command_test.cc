@@ -98,7 +98,7 @@ TEST(SolveCommand, ValueThatIsNoChoice) {
 TEST(SolveCommand, UnknownBackEnd) {
   const Outcome outcome = tactus({"solve", data("two_levels.json"), "--backend", "hopq"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'hopq'; back ends: null-space, qp"));
+  EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'hopq'; back ends: hqp, null-space, qp"));
 }
 
 TEST(SolveCommand, FileThatIsNoTickProblem) {

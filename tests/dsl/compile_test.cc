@@ -87,11 +87,12 @@ TEST(Compile, ADefaultThatNamesWhatIsNotThereIsRefusedOnlyWhenItIsUsed) {
 TEST(Compile, WhatTheBackEndLacksIsSaidWhereItIsAskedFor) {
   const std::string none = "<controller backend=\"none\"/>";
   EXPECT_THAT(errors(smallStack(level("<test.pull name=\"p\"/>", " strict=\"true\""), none)),
-              ElementsAre("3:29 E060 back end 'none' weighs levels against each other: it cannot keep one strictly"));
+              ElementsAre("3:29 E060 back end 'none' weighs levels against each other: it cannot keep one strictly; "
+                          "it could be: null-space, all, first"));
   EXPECT_THAT(errors(smallStack(level("<test.guard name=\"p\"/>"), none)),
-              ElementsAre("4:1 E060 <test.guard> is an inequality, and back end 'none' honours none"));
+              ElementsAre("4:1 E060 <test.guard> is an inequality, and back end 'none' honours none; it could be: null-space, all"));
   EXPECT_THAT(errors(smallStack(level("<test.press name=\"p\" friction=\"0.3\"/>"), none)),
-              ElementsAre("4:32 E060 back end 'none' honours no friction cones"));
+              ElementsAre("4:32 E060 back end 'none' honours no friction cones; it could be: all"));
   for (const char* tasks : {"<test.guard name=\"p\"/>", "<test.press name=\"p\" friction=\"0.3\"/>"})
     EXPECT_THAT(errors(smallStack(level(tasks, " strict=\"true\""))), testing::IsEmpty());
   EXPECT_THAT(errors(smallStack(level("<test.press name=\"p\"/>"), none)), testing::IsEmpty());
@@ -102,7 +103,8 @@ TEST(Compile, ABackEndMayKeepItsFirstLevelAloneStrictly) {
   EXPECT_THAT(errors(smallStack("<level priority=\"2\" strict=\"true\">" + pull + "p\"/></level>", first)), testing::IsEmpty());
   EXPECT_THAT(errors(smallStack("<level priority=\"1\" strict=\"true\">" + pull + "p\"/></level>\n<level priority=\"2\" strict=\"true\">" +
                                     pull + "q\"/></level>", first)),
-              ElementsAre("4:29 E060 back end 'first' cannot keep this level strictly: it is only strict at the top"));
+              ElementsAre("4:29 E060 back end 'first' cannot keep this level strictly: it is only strict at the top; "
+                          "it could be: null-space, all"));
 }
 
 TEST(Compile, HandsOnRateGravityLevelsAndNames) {

@@ -149,6 +149,7 @@ TEST(Hqp, EveryLevelIsOptimal) {
       const Eigen::VectorXd own_y = cholesky.matrixL().solve(own);
       Eigen::VectorXd gradient = Eigen::VectorXd::Zero(problem.dof);
       double size = y.norm();
+      double steepest = 0;
       for (const TickTask& task : problem.levels[i].tasks)
         for (int r = 0; r < task.rows; ++r) {
           if (task.relation == Relation::inequality && task.force[r] == 0) continue;
@@ -157,9 +158,11 @@ TEST(Hqp, EveryLevelIsOptimal) {
           if (norm == 0) continue;
           a /= norm;
           const double wanted = task.has_acceleration ? task.acceleration[r] / norm : a.dot(own_y);
-          gradient += (a.dot(y) - wanted) * a;
+          gradient += norm * norm * (a.dot(y) - wanted) * a;
+          steepest = std::max(steepest, norm * norm);
           size += std::abs(wanted);
         }
+      if (steepest > 0) gradient /= steepest;
       std::vector<Eigen::VectorXd> cone;
       for (int j = 0; j < G.rows(); ++j) {
         const double norm = G.row(j).norm();
@@ -208,6 +211,62 @@ TEST(Hqp, Law6TheOrderOfTasksChangesNothing) {
   }
   std::cout << "worst " << met.worst << "\n";
   EXPECT_LE(met.worst, 1e-7);
+}
+
+// With w_f as the top weight and w_r a ratio below the last one.  Rows of unit length: a level that cannot be reached
+// is then the same compromise for both.
+TEST(Hqp, Law5TheAccelerationProgrammeApproachesIt) {
+  ProblemSource source(47);
+  std::vector<double> differences[2];
+  int held = 0;
+  while (differences[0].size() < problems_per_law) {
+    TickProblem problem = source.problem({.min_dof = 12, .max_dof = 20, .min_levels = 2, .max_levels = 3,
+                                          .inequality_share = 0, .copy_share = 0, .combination_share = 0,
+                                          .max_log10_condition = 1, .max_log10_scale = 0, .common_direction = 0.3,
+                                          .max_tasks = 2, .max_rows = 3});
+    // Level 1: contacts at rest.  A contact that presses is a force apart from τ_s in the programme, and part of τ here.
+    problem.levels[0].tasks.clear();
+    for (const Relation relation : {Relation::equality, Relation::inequality}) {
+      TickTask touch = source.task("touch", problem.dof, {.max_log10_scale = 0, .acceleration_share = 0, .max_rows = 3});
+      touch.relation = relation;
+      touch.contact = true;
+      touch.force.setZero();
+      problem.levels[0].tasks.push_back(touch);
+    }
+    for (TickLevel& level : problem.levels)
+      for (TickTask& task : level.tasks) {
+        const Eigen::MatrixXd unit = test::unitRows(problem, task.J());
+        const Eigen::MatrixXd L = problem.mass_matrix.llt().matrixL();
+        task.jacobian.topRows(task.rows) = unit * L.transpose();
+      }
+    if (!test::denseRanks(problem, 1e-8, 0.2).clear) continue;
+    const TickSolution strict = solve(problem);
+    held += strict.rows_held;
+    const double size = test::inverseMassNorm(problem, strict.torque);
+    if (size < 1e-3) continue;                                     // a level that asks for nothing
+    int k = 0;
+    for (const double ratio : {1e4, 1e5}) {
+      qp::WeightedQpOptions options;
+      options.weight_ratio = ratio;
+      options.force_weight = 1;
+      options.regularisation = 1 / ratio;
+      qp::QpBackEnd weighted(options, qp::makeActiveSetSolver());
+      TickSolution solution;
+      weighted.prepare(problem, solution);
+      weighted.solve(problem, solution);
+      ASSERT_EQ(solution.status, Status::ok) << solution.message;
+      differences[k++].push_back(test::inverseMassNorm(problem, solution.torque - strict.torque) / size);
+    }
+  }
+  double worst = 0, sum = 0;
+  for (std::size_t i = 0; i < differences[0].size(); ++i) {
+    worst = std::max(worst, differences[1][i]);
+    sum += std::log10(differences[0][i] / differences[1][i]);
+  }
+  std::cout << "worst at 1e5 " << worst << ", falls by 10^" << sum / differences[0].size() << " from 1e4 to 1e5, " << held
+            << " rows held\n";
+  EXPECT_LE(worst, 0.2);
+  EXPECT_NEAR(sum / differences[0].size(), 1, 0.15);
 }
 
 TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {

@@ -24,7 +24,7 @@ using test::ProblemSource;
 using test::RandomProblemOptions;
 
 constexpr double law_tolerance = 1e-9;                             // relative to ‖row‖ ‖τ‖ in the M⁻¹ metric
-constexpr int problems_per_law = 400;
+constexpr int problems_per_law = 1000;
 
 // Many rows in few joints, which press in similar directions: rows that are held on the way must be released.
 RandomProblemOptions crowded() { return {.max_dof = 20, .inequality_share = 0.6, .copy_share = 0.1, .max_rows = 6}; }

@@ -12,10 +12,10 @@
 namespace tactus::test {
 
 struct RandomProblemOptions {
-  int min_dof = 7;
-  int max_dof = 40;
+  int min_dof = 9;
+  int max_dof = 50;
   int min_levels = 2;
-  int max_levels = 5;
+  int max_levels = 6;
   double inequality_share = 0.4;                                   ///< of the tasks
   double copy_share = 0.2;                                         ///< of the rows: a multiple of an earlier row
   double combination_share = 0.15;                                 ///< of the rows: a combination of two earlier rows
