@@ -130,7 +130,7 @@ TEST(Capsule, OfARealStackBeyondItsActuators) {
   EXPECT_THAT(all.out, HasSubstr("the same bits"));
   const nlohmann::json list =
       tactus({"solve", folder.file("run/" + capsules.front()), "--backend", "any", "--json"}).json();
-  EXPECT_EQ(list[0]["backend"], "hqp");
+  EXPECT_EQ(list[0]["backend"], "null-space");
   EXPECT_EQ(list[0]["capsule"]["reproduced"], true);
   EXPECT_EQ(list[1]["capsule"]["reproduced"], false);
 

@@ -258,15 +258,15 @@ TEST(Hqp, Law5TheAccelerationProgrammeApproachesIt) {
       differences[k++].push_back(test::inverseMassNorm(problem, solution.torque - strict.torque) / size);
     }
   }
-  double worst = 0, sum = 0;
-  for (std::size_t i = 0; i < differences[0].size(); ++i) {
-    worst = std::max(worst, differences[1][i]);
-    sum += std::log10(differences[0][i] / differences[1][i]);
-  }
-  std::cout << "worst at 1e5 " << worst << ", falls by 10^" << sum / differences[0].size() << " from 1e4 to 1e5, " << held
-            << " rows held\n";
-  EXPECT_LE(worst, 0.2);
-  EXPECT_NEAR(sum / differences[0].size(), 1, 0.15);
+  double sum = 0;
+  for (std::size_t i = 0; i < differences[0].size(); ++i) sum += std::log10(differences[0][i] / differences[1][i]);
+  std::sort(differences[1].begin(), differences[1].end());
+  // What the 1/ratio is multiplied by has no bound over random problems: all but one in a hundred are judged.
+  const double most = differences[1][differences[1].size() * 99 / 100];
+  std::cout << "at 1e5 at most " << most << " in 99 of 100, falls by 10^" << sum / differences[0].size()
+            << " from 1e4 to 1e5, " << held << " rows held\n";
+  EXPECT_LE(most, 0.02);
+  EXPECT_NEAR(sum / differences[0].size(), 1, 0.05);
 }
 
 TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {
