@@ -99,7 +99,7 @@ Figure measureTick(const TickCase& tick_case, const BackEndChoice& choice, int s
         controller->tick(tick_case.sensed(k));
         ++calls;
         figure.steps += controller->solution().iterations;
-        figure.failures += controller->solution().status != control::Status::ok;
+        figure.failures += controller->record().status != control::Status::ok;
       },
       samples);
   figure.steps /= calls;

@@ -83,7 +83,7 @@ Controller::Controller(std::shared_ptr<const dynamics::Model> model, std::vector
       period_(period),
       options_(options),
       cache_(*model_, gravity_W),
-      sensing_(model_->dof(), static_cast<int>(model_->frames().size()), options.hold, period),
+      sensing_(*model_, static_cast<int>(model_->frames().size()), options.hold, period),
       problem_(makeProblemShape(*model_, levels_, options.limits_priority)),
       shaper_(model_->effort(), options.torque_rate, period),
       wanted_(Eigen::VectorXd::Zero(model_->dof())),

@@ -14,11 +14,23 @@ bool areNumbers(const Eigen::Vector3d& v) { return isNumber(v.x()) && isNumber(v
 }  // namespace
 
 SensingGuard::SensingGuard(int dof, int links, double hold, double period)
-    : links_(links), hold_(hold), period_(period), lost_(static_cast<std::size_t>(dof)), never_sensed_(dof) {
+    : links_(links), hold_(hold), period_(period), never_sensed_(dof) {
+  for (int i = 0; i < dof; ++i) lost_.push_back({i, 1, i, 1});
   known_.q.setZero(dof);
   known_.qd.setZero(dof);
   known_.contacts.reserve(contact_capacity);
   ignored_links_.reserve(contact_capacity);
+}
+
+SensingGuard::SensingGuard(const dynamics::Model& model, int links, double hold, double period)
+    : SensingGuard(model.dof(), links, hold, period) {
+  for (const dynamics::Model::Joint& joint : model.joints()) {
+    if (joint.driver >= 0) continue;
+    for (int i = 0; i < joint.coordinate_count; ++i)
+      lost_[static_cast<std::size_t>(joint.coordinate + i)] = {joint.position, joint.position_count, joint.coordinate,
+                                                               joint.coordinate_count};
+  }
+  known_.q = model.neutral();
 }
 
 const Sensed& SensingGuard::check(const Sensed& raw) {
@@ -35,14 +47,14 @@ const Sensed& SensingGuard::check(const Sensed& raw) {
 }
 
 bool SensingGuard::checkJoints(const Sensed& raw) {
-  const Eigen::Index dof = known_.q.size();
-  const bool sized = raw.q.size() == dof && raw.qd.size() == dof;
-  for (Eigen::Index i = 0; i < dof; ++i) {
-    Joint& joint = lost_[static_cast<std::size_t>(i)];
-    joint.now = !sized || !isNumber(raw.q[i]) || !isNumber(raw.qd[i]);
+  const bool sized = raw.q.size() == known_.q.size() && raw.qd.size() == known_.qd.size();
+  for (Joint& joint : lost_) {
+    joint.now = !sized;
+    for (int i = 0; i < joint.position_count && !joint.now; ++i) joint.now = !isNumber(raw.q[joint.position + i]);
+    for (int i = 0; i < joint.coordinate_count && !joint.now; ++i) joint.now = !isNumber(raw.qd[joint.coordinate + i]);
     if (!joint.now) {
-      known_.q[i] = raw.q[i];
-      known_.qd[i] = raw.qd[i];
+      for (int i = 0; i < joint.position_count; ++i) known_.q[joint.position + i] = raw.q[joint.position + i];
+      for (int i = 0; i < joint.coordinate_count; ++i) known_.qd[joint.coordinate + i] = raw.qd[joint.coordinate + i];
       if (!joint.ever_good) --never_sensed_;
       joint.ever_good = true;
       joint.lost_for = 0;

@@ -3,17 +3,20 @@
 #include <vector>
 
 #include "framework/control/sensed.h"
+#include "framework/dynamics/model.h"
 
 namespace tactus::control {
 
 /// What was wrong with what a tick sensed.
 struct SensingRecord {
-  int joints_held = 0;                                             ///< joints whose last good values stand in
+  int joints_held = 0;                                             ///< coordinates q̇ whose last good values stand in
   int contacts_ignored = 0;
   bool blind = false;                                              ///< some joint is unknown for longer than `hold`
 };
 
 /// Stands between the plant and the controller: nothing passes that is not a number.
+///
+/// Joints are counted by their coordinates q̇; those of a ball or a floating base are lost together.
 ///
 /// - A joint whose q or q̇ is not finite, or beyond 1e6 (rad, m, per s), is *lost*: its last good q and q̇ stand in.
 ///   Where q or q̇ has the wrong size, all joints are.  Once a joint has been lost for longer than `hold` seconds, or
@@ -27,6 +30,8 @@ class SensingGuard {
  public:
   static constexpr int contact_capacity = 1024;
 
+  SensingGuard(const dynamics::Model& model, int links, double hold, double period);
+  /// `dof` joints with one coordinate each.
   SensingGuard(int dof, int links, double hold, double period);
 
   /// `raw` itself where nothing is wrong with it, else what may be used of it; valid until the next call.
@@ -40,6 +45,8 @@ class SensingGuard {
 
  private:
   struct Joint {
+    int position, position_count;                                  // into q, of the joint that the coordinate belongs to
+    int coordinate, coordinate_count;                              // into q̇
     bool now = false;
     bool ever_good = false;
     double lost_for = 0;                                           // s

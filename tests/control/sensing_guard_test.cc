@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "tests/dynamics/robots.h"
+
 namespace tactus::control {
 namespace {
 
@@ -56,6 +58,22 @@ TEST(SensingGuard, HoldsALostJointForAWhileAndIsBlindThen) {
   EXPECT_TRUE(guard.knowsState());
   guard.check(good(0.022));
   EXPECT_FALSE(guard.record().blind);
+}
+
+TEST(SensingGuard, AFloatingBaseIsLostAsAWhole) {
+  const dynamics::Model model(test_robots::humanoid());
+  ASSERT_EQ(model.positionCount(), model.dof() + 1);
+  SensingGuard guard(model, 3, 0.02, 0.001);
+  Sensed sensed;
+  sensed.q = model.neutral();
+  sensed.qd.setZero(model.dof());
+  EXPECT_EQ(&guard.check(sensed), &sensed);
+  EXPECT_TRUE(guard.knowsState());
+  sensed.time = 0.001;
+  sensed.q[3] = nan;                                               // of the quaternion
+  const Sensed& used = guard.check(sensed);
+  EXPECT_EQ(guard.record().joints_held, 6);
+  EXPECT_EQ(used.q, model.neutral());
 }
 
 TEST(SensingGuard, AbsentJointsAreLostToo) {
