@@ -24,6 +24,22 @@ struct QpBackEnd::Workspace {
   Eigen::VectorXd y;                                               // L⁻¹ τ
 };
 
+namespace {
+
+bool keepsLimits(const TickProblem& problem, const Eigen::VectorXd& torque) {
+  if (!problem.torque_limits) return true;
+  const double tolerance = QpBackEnd::primal_limit * torque.norm();
+  return (torque - problem.torque_limits->upper).maxCoeff() <= tolerance &&
+         (problem.torque_limits->lower - torque).maxCoeff() <= tolerance;
+}
+
+void cutToLimits(const TickProblem& problem, Eigen::VectorXd& torque) {
+  if (!problem.torque_limits) return;
+  torque = torque.cwiseMax(problem.torque_limits->lower).cwiseMin(problem.torque_limits->upper);
+}
+
+}  // namespace
+
 bool isOptimal(const control::KktResidual& kkt) {
   return kkt.primal <= QpBackEnd::primal_limit && kkt.complementarity <= QpBackEnd::complementarity_limit &&
          kkt.stationarity <= QpBackEnd::stationarity_limit;
@@ -58,6 +74,13 @@ void QpBackEnd::doSolve(const TickProblem& problem, TickSolution& solution) {
   if (solution.has_kkt && isOptimal(answer.kkt)) {
     solution.n_contact_forces = work.programme.answer(problem, work.whitened, work.x, solution.torque,
                                                       solution.contact_forces);
+    if (!keepsLimits(problem, solution.torque)) {
+      solution.status = Status::failed;
+      solution.message = "the answer leaves the torque limits: the problem is scaled too badly";
+      fallBack(problem, solution);
+    } else {
+      cutToLimits(problem, solution.torque);                       // by rounding
+    }
   } else {
     solution.late = answer.verdict == ProgrammeSolver::Verdict::late;
     solution.status = answer.verdict == ProgrammeSolver::Verdict::infeasible ? Status::infeasible : Status::failed;
@@ -80,8 +103,7 @@ void QpBackEnd::fallBack(const TickProblem& problem, TickSolution& solution) {
     work_->y = work_->whitened.ownTorque(0);
     work_->whitened.toTorque(work_->y, solution.torque);
   }
-  if (problem.torque_limits)
-    solution.torque = solution.torque.cwiseMax(problem.torque_limits->lower).cwiseMin(problem.torque_limits->upper);
+  cutToLimits(problem, solution.torque);
 }
 
 void QpBackEnd::report(const TickProblem& problem, TickSolution& solution) {

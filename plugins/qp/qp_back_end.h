@@ -37,7 +37,7 @@ class ProgrammeSolver {
 
 /// The weighted quadratic programme of a tick, solved by a given solver.
 ///
-/// The answer is `ok` only when its KKT residual keeps the limits below.  Otherwise the torque of the first level, cut
+/// The answer is `ok` only when its KKT residual and its torque keep the limits below.  Otherwise the torque of the first level, cut
 /// to the torque limits, is left, and the status is `infeasible` when the constraints contradict each other, `failed`
 /// when not.
 class QpBackEnd final : public control::BackEnd {
