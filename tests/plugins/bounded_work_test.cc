@@ -16,7 +16,7 @@ namespace {
 using control::Status;
 using test::ProblemSource;
 
-/// `most_failed`: the weights of the programme, squared masses of condition 1e6 and units 1e6 apart leave some problems
+/// `most_failed`: weights of up to six levels, masses of condition 1e6 and units 1e6 apart leave some weighted programmes
 /// without a digit; those must say so.
 void expectBoundedWork(const std::function<std::unique_ptr<control::BackEnd>()>& make, unsigned seed, int most_failed) {
   ProblemSource source(seed);
