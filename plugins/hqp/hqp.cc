@@ -76,7 +76,6 @@ class Hqp::Solver {
   void toPoint();
   void reportActive(TickSolution& solution);
 
-  control::RankOptions rank_;
   int dof_;
   control::WhitenedProblem whitened_;
   TickProblem bounded_;
@@ -124,8 +123,7 @@ class Hqp::Solver {
 };
 
 Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
-    : rank_(options.rank),
-      dof_(shape.dof),
+    : dof_(shape.dof),
       whitened_(shape),
       bounded_(shape),
       chain_(shape.dof, shape.rowCapacity() + shape.dof, 2 * static_cast<int>(shape.levels.size()) + 2, options.rank),
