@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "apps/tactus/comparison_view.h"
 #include "apps/tactus/differences.h"
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/progress.h"
@@ -11,6 +12,7 @@
 #include "apps/tactus/stack_arguments.h"
 #include "apps/tactus/text.h"
 #include "dsl/compile.h"
+#include "framework/runtime/file_error.h"
 #include "framework/runtime/percentile.h"
 
 namespace tactus::app {
@@ -21,6 +23,45 @@ using nlohmann::ordered_json;
 struct CompareArguments : StackArguments {
   std::string back_ends = "null-space,qp/ipopt,qp/nlopt";
   long every = 50;
+  std::string page;                                                ///< file of the page, empty for none
+};
+
+/// How a closed loop went, for its curves: so many samples at most, each the largest of its ticks.
+class Traces final : public runtime::Observer {
+ public:
+  explicit Traces(const Session& session)
+      : session_(session), ticks_per_sample_(std::max(1L, std::lround(session.stack().run.duration / session.controller().period() / most_samples))) {}
+  void observe(const runtime::ObservedTick& tick) override {
+    const runtime::ContactMetrics::Now& now = session_.contacts().now();
+    if (ticks_++ % ticks_per_sample_ == 0) samples_.push_back({tick.sensed.time, 0, 0, 0});
+    Sample& sample = samples_.back();
+    sample.links = std::max(sample.links, now.links);
+    sample.force = std::max(sample.force, now.max_N);
+    sample.tick_us = std::max(sample.tick_us, tick.tick_us);
+  }
+  ordered_json toJson() const {
+    ordered_json json{{"time", ordered_json::array()}};
+    for (const Sample& sample : samples_) {
+      json["time"].push_back(sample.time);
+      json["links"].push_back(sample.links);
+      json["force_max_N"].push_back(sample.force);
+      json["tick_max_us"].push_back(sample.tick_us);
+    }
+    return json;
+  }
+
+ private:
+  static constexpr double most_samples = 500;
+  struct Sample {
+    double time;                                                   ///< of the first tick, s
+    int links;
+    double force;                                                  ///< N, of a desired link
+    double tick_us;
+  };
+  const Session& session_;
+  long ticks_per_sample_;
+  long ticks_ = 0;
+  std::vector<Sample> samples_;
 };
 
 /// Mean of |error| of each task over a run.
@@ -64,8 +105,9 @@ ordered_json timesToJson(const std::vector<double>& times) {
 ordered_json closedLoop(Session& session, const std::string& label, const std::vector<runtime::Observer*>& more,
                         const std::atomic<bool>& stop) {
   TaskErrors errors(session.controller());
+  Traces traces(session);
   Progress progress(session.stack().run.duration, label + ": ");
-  std::vector<runtime::Observer*> observers{&errors, &progress};
+  std::vector<runtime::Observer*> observers{&errors, &traces, &progress};
   observers.insert(observers.end(), more.begin(), more.end());
   const runtime::LoopResult result = session.run(observers, stop);
 
@@ -88,7 +130,8 @@ ordered_json closedLoop(Session& session, const std::string& label, const std::v
           {"kkt_max", kktToJson(statistics.has_kkt, statistics.kkt_max)},
           {"warnings", session.warnings()},
           {"metrics", metrics},
-          {"task_errors", errors.means()}};
+          {"task_errors", errors.means()},
+          {"traces", traces.toJson()}};
 }
 
 ordered_json sameStates(const std::vector<control::TickProblem>& problems, const Answers& reference,
@@ -110,66 +153,6 @@ ordered_json sameStates(const std::vector<control::TickProblem>& problems, const
           {"solve_us", timesToJson(answers.solve_us)}};
 }
 
-/// One column for each back end.
-class Table {
- public:
-  explicit Table(const ordered_json& comparison) : back_ends_(comparison["backends"]) {
-    std::vector<std::string> head{""};
-    for (const ordered_json& back_end : back_ends_) head.push_back(back_end["backend"].get<std::string>());
-    rows_.push_back(head);
-  }
-  void heading(const std::string& text) { rows_.push_back({text}); }
-  void row(const std::string& label, const std::string& pointer) {
-    std::vector<std::string> cells{"  " + label};
-    for (const ordered_json& back_end : back_ends_) {
-      const ordered_json::json_pointer at(pointer);
-      const bool known = back_end.contains(at) && back_end[at].is_number();
-      cells.push_back(known ? rounded(back_end[at].get<double>()) : "–");
-    }
-    rows_.push_back(cells);
-  }
-  void rowsOf(const std::string& pointer) {
-    const ordered_json& first = back_ends_.front()[ordered_json::json_pointer(pointer)];
-    for (const auto& [name, value] : first.items()) row(name, pointer + "/" + name);
-  }
-  std::string text() const { return textTable(rows_); }
-
- private:
-  const ordered_json& back_ends_;
-  std::vector<std::vector<std::string>> rows_;
-};
-
-std::string comparisonTable(const ordered_json& comparison) {
-  Table table(comparison);
-  table.heading("same " + std::to_string(comparison["sampled_ticks"].get<size_t>()) + " tick problems of " +
-                comparison["reference"].get<std::string>());
-  table.row("torque difference, mean (M⁻¹ norm)", "/same_states/torque_difference/mean");
-  table.row("torque difference, max", "/same_states/torque_difference/max");
-  table.row("relative, mean", "/same_states/torque_difference_relative/mean");
-  table.row("relative, max", "/same_states/torque_difference_relative/max");
-  table.row("constraint violation, max (relative)", "/same_states/violation_max");
-  table.row("KKT stationarity, max", "/same_states/kkt_max/stationarity");
-  table.row("not solved", "/same_states/unsolved");
-  table.row("other active rows, ticks", "/same_states/other_active_rows");
-  table.row("other joints at torque limits, ticks", "/same_states/other_limits");
-  table.row("solve, median (µs)", "/same_states/solve_us/median");
-  table.row("solve, p99 (µs)", "/same_states/solve_us/p99");
-  table.heading("closed loop");
-  table.row("duration (s)", "/closed_loop/duration_s");
-  table.row("× real time", "/closed_loop/realtime_factor");
-  table.row("tick, median (µs)", "/closed_loop/tick_us/median");
-  table.row("tick, p99 (µs)", "/closed_loop/tick_us/p99");
-  for (const char* count : {"fallbacks", "infeasible", "limited"}) {
-    table.row(count, std::string("/closed_loop/") + count);
-  }
-  table.row("KKT stationarity, max", "/closed_loop/kkt_max/stationarity");
-  table.row("KKT primal, max", "/closed_loop/kkt_max/primal");
-  table.rowsOf("/closed_loop/metrics");
-  table.heading("mean task error in closed loop");
-  table.rowsOf("/closed_loop/task_errors");
-  return table.text();
-}
-
 int compare(const CompareArguments& arguments, bool json) {
   Program program(arguments.plugins);
   const std::vector<std::string> labels = split(arguments.back_ends, ',');
@@ -178,7 +161,9 @@ int compare(const CompareArguments& arguments, bool json) {
     options.back_end = label;
     return readAloud(program, options);
   };
-  for (const std::string& label : labels) program.backEndChoice(label);  // Refuse before the first long run.
+  // What can be refused is refused before the first long run.
+  for (const std::string& label : labels) program.backEndChoice(label);
+  if (!arguments.page.empty()) runtime::writeFile(arguments.page, unfinishedPage());
 
   const Interrupt interrupt;
   ProblemSampler sampler(arguments.every);
@@ -199,7 +184,6 @@ int compare(const CompareArguments& arguments, bool json) {
     }
   }
   Answers reference;
-  std::string why;
   for (size_t i = 0; i < labels.size(); ++i) {
     // A fresh controller, so that no back end starts warm from its own run.
     const auto controller = dsl::compile(readFor(labels[i]), program.registry());
@@ -209,15 +193,18 @@ int compare(const CompareArguments& arguments, bool json) {
     const std::vector<std::string>& joints = controller->model().jointNames();
     back_ends[i]["same_states"] = sameStates(sampler.problems(), reference, answers, apart);
     back_ends[i]["same_states"]["ticks"] = toJson(apart, sampler, answers, joints);
-    const std::string lines = largestDifferences(apart, sampler, joints, labels.front());
-    if (!lines.empty()) why += "where " + labels[i] + " is furthest from " + labels.front() + "\n" + lines;
+    back_ends[i]["same_states"]["furthest"] = largestDifferences(apart, sampler, joints, labels.front());
   }
   const ordered_json comparison{{"stack", name},
                                 {"seed", seed},
                                 {"reference", labels.front()},
                                 {"sampled_ticks", sampler.problems().size()},
                                 {"backends", back_ends}};
-  std::cout << (json ? comparison.dump(2) + "\n" : comparisonTable(comparison) + why);
+  if (!arguments.page.empty()) {
+    runtime::writeFile(arguments.page, comparisonPage(comparison));
+    std::cerr << "page: " << arguments.page << "\n";
+  }
+  std::cout << (json ? comparison.dump(2) + "\n" : comparisonText(comparison));
   return code;
 }
 
@@ -234,13 +221,14 @@ void addCompare(CLI::App& program, Context& context) {
       ->type_name("K")
       ->check(positive())
       ->capture_default_str();
+  command->add_option("--page", arguments->page, "Write the comparison as a page with curves, too")->type_name("FILE");
   arguments->declare(*command);
   command->add_flag("--json", context.json,
                     "{stack, seed, reference, sampled_ticks, backends: [{backend, closed_loop, same_states}]}");
   command->footer(R"(A back end may name its variants: qp/nlopt, null-space/augmented, null-space/successive/one-pass.
 
 Examples:
-  tactus compare examples/explore_table/stack.xml --backends null-space,qp/ipopt,qp/nlopt --duration 5
+  tactus compare examples/explore_table/stack.xml --backends null-space,qp/ipopt,hqp --duration 5 --page compare.html
   tactus compare examples/explore_table/stack.xml --backends null-space/successive,null-space/augmented --json)");
   command->callback([=, &context] { context.action = [=, &context] { return compare(*arguments, context.json); }; });
 }

@@ -15,6 +15,13 @@ struct BoundsOf {
   std::vector<int> joints;                                         ///< at a torque limit
 };
 
+/// A task that one answer does better than the other.
+struct TaskDifference {
+  int level = 0, task = 0;                                         ///< indices into the problem
+  double asked = 0;                                                ///< ‖a‖, m/s² or rad/s²
+  double here = 0, there = 0;                                      ///< ‖J M⁻¹ τ − a‖ of both answers
+};
+
 struct TickDifference {
   double time = 0;                                                 ///< s
   bool both_solved = true;
@@ -22,6 +29,7 @@ struct TickDifference {
   double relative = 0;                                             ///< over the norm of the reference
   BoundsOf here;                                                   ///< at a bound in this answer alone
   BoundsOf there;                                                  ///< in the reference alone
+  std::vector<TaskDifference> tasks;                               ///< the largest shares of what is asked first
 };
 
 TickDifference differenceOf(const control::TickProblem& problem, const control::TickSolution& reference,
@@ -31,12 +39,13 @@ TickDifference differenceOf(const control::TickProblem& problem, const control::
 std::vector<TickDifference> differences(const ProblemSampler& sampler, const Answers& reference, const Answers& other);
 
 /// [{time, both_solved, distance, relative, active_here: [{task, row}], active_there, limits_here: [joints],
-///   limits_there, solve_us}]
+///   limits_there, tasks: [{task, asked, missed_here, missed_there}], solve_us}]
 nlohmann::ordered_json toJson(const std::vector<TickDifference>& differences, const ProblemSampler& sampler,
                               const Answers& other, const std::vector<std::string>& joints);
 
-/// "t = 0.35 s: 12 % apart; 'limits' row 2 is at its bound here alone; …": the largest ones, a line each.
-std::string largestDifferences(const std::vector<TickDifference>& differences, const ProblemSampler& sampler,
-                               const std::vector<std::string>& joints, const std::string& reference, size_t most = 3);
+/// "t = 0.35 s, 12 % apart: at their bounds here alone: 'limits' row 2; …": the largest ones, a line each.
+std::vector<std::string> largestDifferences(const std::vector<TickDifference>& differences,
+                                            const ProblemSampler& sampler, const std::vector<std::string>& joints,
+                                            const std::string& reference, size_t most = 3);
 
 }  // namespace tactus::app

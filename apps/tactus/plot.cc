@@ -28,6 +28,12 @@ std::string fixed(double value, int decimals) {
           std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::fixed, decimals).ptr};
 }
 
+/// 10ⁿ as people write it: 0.01, 1, 1000, 1e-7.
+std::string decade(long n) {
+  if (n < -3 || n > 4) return "1e" + std::to_string(n);
+  return fixed(std::pow(10.0, static_cast<double>(n)), static_cast<int>(std::max(0L, -n)));
+}
+
 /// What is larger, or not finite, has no place on an axis: a gap is left.
 constexpr double largest_drawn = 1e12;
 bool isDrawn(double value) { return std::abs(value) <= largest_drawn; }
@@ -66,7 +72,8 @@ double niceStep(const Range& range, int count) {
 /// The frame of a plot: from values to pixels, axes with ticks and labels.
 class Frame {
  public:
-  Frame(const Box& box, Range x, Range y) : box_(box), x_(x), y_(y) {
+  /// `decades`: y is the decimal logarithm of what the labels say.
+  Frame(const Box& box, Range x, Range y, bool decades = false) : box_(box), x_(x), y_(y), decades_(decades) {
     area_ = {box.x + margin_left, box.y + margin_top, box.width - margin_left - margin_right,
              box.height - margin_top - margin_bottom};
   }
@@ -86,20 +93,20 @@ class Frame {
   std::string axes(const std::string& title, const std::string& x_label, const std::string& y_label) const {
     std::string svg = "<rect x='" + px(area_.x) + "' y='" + px(area_.y) + "' width='" + px(area_.width) + "' height='" +
                       px(area_.height) + "' fill='#fbfbfa' stroke='#c9c9c4'/>\n";
-    const auto ticks = [&](const Range& range, int count, auto&& draw) {
-      const double step = niceStep(range, count);
+    const auto ticks = [&](const Range& range, int count, bool decades, auto&& draw) {
+      const double step = decades ? std::max(1.0, niceStep(range, count)) : niceStep(range, count);
       const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
       for (double k = std::ceil(range.lower / step - 1e-9); k * step <= range.upper + 1e-9 * step; ++k) {
-        draw(k * step, fixed(k * step, decimals));
+        draw(k * step, decades ? decade(std::lround(k * step)) : fixed(k * step, decimals));
       }
     };
-    ticks(x_, static_cast<int>(std::max(2.0, area_.width / 80)), [&](double value, const std::string& text) {
+    ticks(x_, static_cast<int>(std::max(2.0, area_.width / 80)), false, [&](double value, const std::string& text) {
       const std::string at = px(px_x(value));
       svg += "<path d='M" + at + " " + px(area_.y) + "v" + px(area_.height) +
              "' stroke='#e7e7e2' fill='none'/><text x='" + at + "' y='" + px(area_.y + area_.height + 16) +
              "' text-anchor='middle' fill='#555'>" + text + "</text>\n";
     });
-    ticks(y_, static_cast<int>(std::max(2.0, area_.height / 32)), [&](double value, const std::string& text) {
+    ticks(y_, static_cast<int>(std::max(2.0, area_.height / 32)), decades_, [&](double value, const std::string& text) {
       const double at = px_y(value);
       svg += "<path d='M" + px(area_.x) + " " + px(at) + "h" + px(area_.width) +
              "' stroke='#e7e7e2' fill='none'/><text x='" + px(area_.x - 7) + "' y='" + px(at + 4) +
@@ -117,6 +124,7 @@ class Frame {
  private:
   Box box_, area_;
   Range x_, y_;
+  bool decades_;
 };
 
 /// At most two points a pixel: the least and the largest value of each bucket, so that no peak is lost.
@@ -134,6 +142,16 @@ Line thinned(const Line& line, size_t buckets) {
     }
   }
   return thin;
+}
+
+/// y as decimal logarithms; what has none is NaN.
+LinePlot inDecades(LinePlot plot) {
+  const auto logarithm = [](double value) { return value > 0 ? std::log10(value) : NAN; };
+  for (Line& line : plot.lines)
+    for (double& value : line.y) value = logarithm(value);
+  if (plot.wanted) plot.wanted = logarithm(*plot.wanted);
+  plot.from_zero = false;
+  return plot;
 }
 
 std::string path(const Line& line, const Frame& frame) {
@@ -206,7 +224,8 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-std::string draw(const LinePlot& plot, const Box& box) {
+std::string draw(const LinePlot& given, const Box& box) {
+  const LinePlot plot = given.log_y ? inDecades(given) : given;
   Range x, y;
   for (const Line& line : plot.lines) {
     for (const double value : line.x) x.add(value);
@@ -218,7 +237,7 @@ std::string draw(const LinePlot& plot, const Box& box) {
   y.makeDrawable();
   y.upper += 0.06 * y.length();
   if (y.lower < 0) y.lower -= 0.06 * y.length();
-  const Frame frame(box, x, y);
+  const Frame frame(box, x, y, plot.log_y);
 
   std::string svg = frame.axes(plot.title, plot.x_label, plot.y_label);
   for (const Line& line : plot.lines) svg += path(thinned(line, static_cast<size_t>(frame.area().width)), frame);

@@ -28,6 +28,7 @@ struct LinePlot {
   std::optional<double> wanted;                                    ///< dashed level
   std::string wanted_label;
   bool from_zero = true;                                           ///< 0 belongs to the y axis
+  bool log_y = false;                                              ///< decades; what is not positive leaves a gap
 };
 
 struct Marker {

@@ -50,6 +50,7 @@ class Session {
   control::Controller& controller() { return *controller_; }
   const control::Controller& controller() const { return *controller_; }
   const runtime::RunStatistics& statistics() const { return statistics_; }
+  const runtime::ContactMetrics& contacts() const { return *contacts_; }
   const std::vector<SoughtFeature>& features() const { return features_; }
   std::string backEndName() const;
   /// The force that the first contact-force task wants, N.

@@ -1,5 +1,6 @@
 #include "framework/control/xray.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,27 @@ struct Span {
   MatrixXd coefficients;                                           // basis = unit · coefficients
   int rank = 0;
 };
+
+/// Σ JᵀF of a level, N m.
+VectorXd ownTorque(const TickLevel& level) {
+  VectorXd torque = VectorXd::Zero(level.tasks.empty() ? 0 : level.tasks[0].jacobian.cols());
+  for (const TickTask& rows : level.tasks) torque += rows.J().transpose() * rows.F();
+  return torque;
+}
+
+/// Norms over the rows that ask for something; `acceleration` is M⁻¹ τ, `own` M⁻¹ Σ JᵀF of the task's level.
+TaskError taskError(const TickTask& rows, const VectorXd& acceleration, const VectorXd& own) {
+  double asked = 0, residual = 0;
+  for (int row = 0; row < rows.rows; ++row) {
+    if (rows.relation == Relation::inequality && rows.force[row] == 0) continue;
+    const auto j = rows.jacobian.row(row);
+    const double a = rows.has_acceleration ? rows.acceleration[row] : j.dot(own);
+    const double r = j.dot(acceleration) - a;
+    asked += a * a;
+    residual += r * r;
+  }
+  return {0, 0, std::sqrt(asked), std::sqrt(residual)};
+}
 
 class Machine {
  public:
@@ -161,18 +183,10 @@ class Machine {
   }
 
   void lookAtErrors(const TickTask& rows, TaskXray& xray) const {
-    const VectorXd acceleration = solve(solution_.torque), own = solve(ownTorque(xray.level));
-    double asked = 0, residual = 0;
-    for (int row = 0; row < rows.rows; ++row) {
-      if (rows.relation == Relation::inequality && rows.force[row] == 0) continue;
-      const auto j = rows.jacobian.row(row);
-      const double a = rows.has_acceleration ? rows.acceleration[row] : j.dot(own);
-      const double r = j.dot(acceleration) - a;
-      asked += a * a;
-      residual += r * r;
-    }
-    xray.asked = std::sqrt(asked);
-    xray.residual = std::sqrt(residual);
+    const VectorXd own = ownTorque(problem_.levels[static_cast<std::size_t>(xray.level)]);
+    const TaskError error = taskError(rows, solve(solution_.torque), solve(own));
+    xray.asked = error.asked;
+    xray.residual = error.residual;
   }
 
   /// M⁻¹ τ
@@ -180,12 +194,6 @@ class Machine {
     VectorXd x = whitened_.massFactor().triangularView<Eigen::Lower>().solve(torque);
     whitened_.massFactor().triangularView<Eigen::Lower>().transpose().solveInPlace(x);
     return x;
-  }
-
-  VectorXd ownTorque(int level) const {
-    VectorXd torque = VectorXd::Zero(problem_.dof);
-    for (const TickTask& rows : problem_.levels[level].tasks) torque += rows.J().transpose() * rows.F();
-    return torque;
   }
 
   // cos²θ = 1 − σ², σ the singular values of what is left of an orthonormal basis.
@@ -347,6 +355,24 @@ std::vector<LimitHit> limitsHit(const TickProblem& problem, const VectorXd& torq
       hits.push_back({i, false, limits.lower[i]});
   }
   return hits;
+}
+
+std::vector<TaskError> taskErrors(const TickProblem& problem, const VectorXd& torque) {
+  std::vector<TaskError> errors;
+  const Eigen::LLT<MatrixXd> mass(problem.mass_matrix);
+  const VectorXd acceleration = mass.solve(torque);
+  for (std::size_t i = 0; i < problem.levels.size(); ++i) {
+    const TickLevel& level = problem.levels[i];
+    if (level.tasks.empty()) continue;
+    const VectorXd own = mass.solve(ownTorque(level));
+    for (std::size_t k = 0; k < level.tasks.size(); ++k) {
+      if (level.tasks[k].rows == 0) continue;
+      errors.push_back(taskError(level.tasks[k], acceleration, own));
+      errors.back().level = static_cast<int>(i);
+      errors.back().task = static_cast<int>(k);
+    }
+  }
+  return errors;
 }
 
 Xray xray(const TickProblem& problem, const TickSolution& solution, const XrayOptions& options) {

@@ -87,6 +87,16 @@ struct Xray {
 /// Looks at a problem and at what a back end answered to it; changes nothing.  Takes memory: not for every tick.
 Xray xray(const TickProblem& problem, const TickSolution& solution, const XrayOptions& options = {});
 
+/// How well a torque does what a task asks for: norms over the rows that ask for something, m/s² or rad/s².
+struct TaskError {
+  int level = 0, task = 0;                                         ///< indices into the problem
+  double asked = 0;                                                ///< ‖a‖
+  double residual = 0;                                             ///< ‖J M⁻¹ τ − a‖
+};
+
+/// Of all tasks with rows in this tick, from the top.
+std::vector<TaskError> taskErrors(const TickProblem& problem, const Eigen::VectorXd& torque);
+
 /// Joints whose torque stands at a limit, within 1e-6 of the distance of the two.
 std::vector<LimitHit> limitsHit(const TickProblem& problem, const Eigen::VectorXd& torque);
 

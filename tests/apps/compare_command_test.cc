@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "framework/runtime/file_error.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {
@@ -66,6 +67,35 @@ TEST(CompareCommand, TableForPeople) {
                            "KKT stationarity", "tick, median (µs)", "tick, p99 (µs)", "fallbacks", "mean task error"}) {
     EXPECT_THAT(outcome.out, HasSubstr(line));
   }
+}
+
+TEST(CompareCommand, ThePageShowsWhereAndWhy) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "stiffness=\"1\"", "stiffness=\"500\"");
+  const std::string page = folder.path() + "/compare.html";
+  const Outcome outcome = tactus({"compare", stack, "--backends", "null-space,hqp", "--duration", "0.1", "--every", "10",
+                                  "--page", page, "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("page: " + page));
+  const std::string html = runtime::readFile(page);
+  const nlohmann::json hqp = outcome.json()["backends"][1];
+  ASSERT_FALSE(hqp["same_states"]["furthest"].empty());
+  EXPECT_EQ(hqp["closed_loop"]["traces"]["time"].size(), hqp["closed_loop"]["traces"]["links"].size());
+  EXPECT_GT(hqp["closed_loop"]["traces"]["time"].size(), 20u);
+  const std::string furthest = hqp["same_states"]["furthest"][0];
+  EXPECT_THAT(html, HasSubstr("<li>" + furthest.substr(0, furthest.find('\''))));
+  for (const char* text : {"back ends compared", "Torque apart from null-space", "at a bound in one of the two alone",
+                           "Time of the solve", "Links in contact", "Time of a tick", "where hqp is furthest from"})
+    EXPECT_THAT(html, HasSubstr(text));
+  for (const char* elsewhere : {"src=", "href=", "@import", "url("})
+    EXPECT_THAT(html, ::testing::Not(HasSubstr(elsewhere)));
+}
+
+TEST(CompareCommand, APageThatCannotBeWrittenIsRefusedBeforeTheFirstRun) {
+  const Outcome outcome = tactus({"compare", data("press.xml"), "--page", "/no/such/folder/compare.html"});
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.err, HasSubstr("/no/such/folder/compare.html"));
+  EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("null-space:")));
 }
 
 TEST(CompareCommand, UnknownVariantIsRefusedBeforeTheFirstRun) {

@@ -45,6 +45,25 @@ TEST(Differences, RowsAndLimitsOfOneAnswerAlone) {
   EXPECT_TRUE(back.here.rows.empty());
 }
 
+TEST(Differences, TheTaskThatOneAnswerDoesBetter) {
+  control::TickProblem two = problem();
+  control::TickTask lift("lift", 1, 2), hold("hold", 1, 2);
+  lift.rows = hold.rows = 1;
+  lift.jacobian << 1, 0;
+  lift.force << 2;                                                 // a = 2 m/s²
+  hold.jacobian << 0, 1;
+  hold.has_acceleration = true;
+  hold.acceleration << 0.5;
+  two.levels.push_back({2, {}, {lift}});
+  two.levels.push_back({3, {}, {hold}});
+  const TickDifference difference = differenceOf(two, solution(2, 2, {}), solution(1, 2, {}));
+  ASSERT_EQ(difference.tasks.size(), 1u) << "the other task is as good in both";
+  EXPECT_EQ(difference.tasks[0].level, 1);
+  EXPECT_NEAR(difference.tasks[0].asked, 2, 1e-12);
+  EXPECT_NEAR(difference.tasks[0].here, 1, 1e-12);
+  EXPECT_NEAR(difference.tasks[0].there, 0, 1e-12);
+}
+
 TEST(Differences, NoneOfAnAnswerFromItself) {
   const TickDifference difference = differenceOf(problem(), solution(3, 4, {0}), solution(3, 4, {0}));
   EXPECT_EQ(difference.distance, 0);

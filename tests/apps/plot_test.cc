@@ -31,6 +31,13 @@ TEST(Plot, LinesHaveTitleAndUnits) {
   for (const char* text : {"Forces", "time (s)", "force (N)", "mean", "wanted"}) EXPECT_THAT(svg, HasSubstr(text));
 }
 
+TEST(Plot, DecadesLeaveAGapWhereThereIsNoLogarithm) {
+  LinePlot plot{"Times", "time (s)", "µs", {{"", "blue", {0, 1, 2, 3, 4}, {1e-5, 10, 0, -3, 1000}}}, {}, "", true, true};
+  const std::string svg = svgDocument(600, 300, draw(plot, box));
+  expectWellFormed(svg);
+  for (const char* label : {">1e-4<", ">100<"}) EXPECT_THAT(svg, HasSubstr(label));
+}
+
 TEST(Plot, APeakOfOneSampleIsNotThinnedAway) {
   Line line{"", "blue", {}, {}};
   for (int i = 0; i < 100000; ++i) {
