@@ -37,6 +37,7 @@ inline constexpr Code unknown_joint{"E031", "the robot has no such moving joint 
 inline constexpr Code unknown_object{"E032", "the scene has no such object"};
 inline constexpr Code unknown_port{"E033", "no signal or port has this name"};
 inline constexpr Code wrong_port_type{"E034", "a port gives another type than the attribute takes"};
+inline constexpr Code wrong_port_unit{"E040", "a port gives another unit or number of values than the attribute takes"};
 inline constexpr Code unknown_class{"E035", "no <defaults> class has this name"};
 inline constexpr Code unknown_parameter{"E036", "no <parameter> has this name"};
 inline constexpr Code unknown_back_end{"E037", "no back end has this name"};
@@ -74,6 +75,13 @@ inline constexpr Code forgotten_centre{"W007", "the centre of mass of a link was
 inline constexpr Code unread_part{"W008", "nothing reads a part of a robot's description"};
 inline constexpr Code lost_digits{"W009", "a robot far from the world's origin costs digits"};
 inline constexpr Code unused_signal{"W010", "nothing reads a signal"};
+inline constexpr Code dead_level{"W020", "a level can do nothing at the start"};
+inline constexpr Code duplicate_rows{"W021", "two tasks of a level ask for the same directions"};
+inline constexpr Code posture_above{"W022", "a task above other levels holds every joint"};
+inline constexpr Code too_many_contacts{"W023", "more contacts are desired than the joints can hold"};
+inline constexpr Code unstable_gains{"W024", "a task's gains are not stable at the stated rate"};
+inline constexpr Code out_of_reach{"W025", "a place cannot be reached"};
+inline constexpr Code unreachable_phase{"W026", "nothing leads to a phase"};
 inline constexpr Code deprecated_part{"W011", "an element or attribute is deprecated"};
 inline constexpr Code former_name{"W012", "an element or attribute has another name now"};
 }  // namespace code
@@ -84,7 +92,7 @@ inline constexpr std::array all_codes{
     code::missing_attribute,  code::bad_value,          code::misplaced_element, code::missing_element,
     code::too_many_elements,  code::stray_text,         code::wrong_format,     code::duplicate_name,
     code::level_order,        code::attributes_clash,   code::unknown_link,       code::unknown_joint,    code::unknown_object,
-    code::unknown_port,       code::wrong_port_type,    code::unknown_class,    code::unknown_parameter,
+    code::unknown_port,       code::wrong_port_type,    code::wrong_port_unit,    code::unknown_class,    code::unknown_parameter,
     code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
     code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::joint_not_for_stacks,
     code::unfit_rate,         code::lacking_ability,
@@ -93,6 +101,8 @@ inline constexpr std::array all_codes{
     code::refused_by_urdf,    code::bad_mimic,          code::impossible_robot, code::no_inertia,
     code::bad_mass,           code::bad_inertia,        code::shape_not_felt,   code::urdf_remark,
     code::meaningless_part,   code::forgotten_centre,   code::unread_part,      code::lost_digits,
-    code::unused_signal,      code::deprecated_part,    code::former_name};
+    code::unused_signal,      code::dead_level,         code::duplicate_rows,     code::posture_above,
+    code::too_many_contacts,  code::unstable_gains,     code::out_of_reach,       code::unreachable_phase,
+    code::deprecated_part,    code::former_name};
 
 }  // namespace tactus::dsl

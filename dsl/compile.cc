@@ -61,6 +61,9 @@ class CompileErrors {
   }
 
   void addElementError(const ElementInstance& element, const ElementError& error) {
+    if (error.place.line > 0)
+      return add(code::refused_by_factory, error.place, std::max(1, countCharacters(error.text)), element.path, error.what(),
+                 nearestName(error.text, error.candidates));
     const control::AttributeRow* row =
         error.attribute.empty() ? nullptr : element.values.row().attribute(error.attribute);
     std::string suggestion;
@@ -155,7 +158,7 @@ class Compiler {
     const auto found = std::find_if(stack_.signals.begin(), stack_.signals.end(),
                                     [&](const ElementInstance& signal) { return signal.name == name; });
     if (found == stack_.signals.end()) throw ElementError(attribute, "the stack has no signal '" + name + "'", names());
-    const auto& rows = found->values.row().ports;
+    const std::vector<control::PortRow> rows = found->values.ports();
     const auto row =
         std::find_if(rows.begin(), rows.end(), [&](const auto& candidate) { return candidate.name == port; });
     if (row == rows.end()) throw ElementError(attribute, "signal '" + name + "' has no port '" + port + "'");
@@ -174,7 +177,7 @@ class Compiler {
   std::vector<std::string> names() const {
     std::vector<std::string> found;
     for (const ElementInstance& signal : stack_.signals)
-      for (const control::PortRow& port : signal.values.row().ports) found.push_back(signal.name + "." + port.name);
+      for (const control::PortRow& port : signal.values.ports()) found.push_back(signal.name + "." + port.name);
     return found;
   }
 

@@ -60,6 +60,7 @@ class StackReader {
     readRun(root);
     checkReferences(root);
     findings_.throwErrors();
+    keepElements(root, 0);
     if (warnings) warnings->insert(warnings->end(), findings_.warnings().begin(), findings_.warnings().end());
     return std::move(stack_);
   }
@@ -169,8 +170,16 @@ class StackReader {
   }
 
   /// A named element; its name is taken from then on.
+  /// With those of the elements inside, which a task or a signal may have.
+  static ElementValues valuesWithin(const CheckedElement& element) {
+    ElementValues values = element.values;
+    values.place = element.xml->place();
+    for (const CheckedElement& child : element.children) values.children.push_back(valuesWithin(child));
+    return values;
+  }
+
   ElementInstance instanceOf(const CheckedElement& element) {
-    ElementInstance instance{element.values, "", element.xml->place(), element.xml->path()};
+    ElementInstance instance{valuesWithin(element), "", element.xml->place(), element.xml->path()};
     if (!element.values.has("name")) return instance;
     instance.name = element.values.text("name");
     const auto [taken, is_new] = names_.emplace(instance.name, element.xml);
@@ -390,15 +399,33 @@ class StackReader {
     stack_.run.targets.push_back(target);
   }
 
+  void keepElements(const CheckedElement& element, int depth) {
+    if (element.row->name == "defaults") return;
+    ResolvedElement kept{element.values, {}, element.xml->place(), element.xml->path(), depth};
+    if (element.row->takes_back_end_options) {
+      // Options stand among the element's own values until they are sorted out.
+      const bool chosen = element.row->name == "controller";
+      const ElementRow* back_end =
+          chosen ? &stack_.back_end.row() : registry_.elements().findBackEnd(element.values.text("backend"));
+      kept.options = ElementValues(*back_end);
+      for (const control::AttributeRow& option : back_end->attributes) {
+        const ElementValues& from = chosen ? stack_.back_end : element.values;
+        if (from.has(option.name)) kept.options.set(option.name, from.value(option.name));
+      }
+    }
+    stack_.elements.push_back(std::move(kept));
+    for (const CheckedElement& child : element.children) keepElements(child, depth + 1);
+  }
+
   void checkReferences(const CheckedElement& root) {
     ReferenceChecker references(stack_, robot_known_, findings_);
     std::vector<const CheckedElement*> signals;
     for (const CheckedElement* list : root.all("signals"))
       for (const CheckedElement& signal : list->children) signals.push_back(&signal);
-    for (const CheckedElement* signal : signals) references.check(*signal);
+    for (const CheckedElement* signal : signals) references.checkAll(*signal);
     for (const CheckedElement* level : root.all("level")) {
       references.check(*level);
-      for (const CheckedElement& task : level->children) references.check(task);
+      for (const CheckedElement& task : level->children) references.checkAll(task);
     }
     references.warnOfUnusedSignals(signals);
   }

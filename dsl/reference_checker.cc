@@ -44,6 +44,11 @@ void ReferenceChecker::say(const Code& code, const CheckedElement& element, cons
   findings_.error(code, *element.xml, "attribute '" + row.name + "' from class '" + of + "': " + message, suggestion);
 }
 
+void ReferenceChecker::checkAll(const CheckedElement& element) {
+  check(element);
+  for (const CheckedElement& child : element.children) checkAll(child);
+}
+
 void ReferenceChecker::check(const CheckedElement& element) {
   for (const AttributeRow& row : element.row->attributes)
     if (element.values.has(row.name)) checkValue(element, row);
@@ -111,17 +116,17 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
   if (found == stack_.signals.end()) {
     std::vector<std::string> ports;
     for (const ElementInstance& instance : stack_.signals)
-      for (const control::PortRow& candidate : instance.values.row().ports)
+      for (const control::PortRow& candidate : instance.values.ports())
         if (candidate.type == row.port_type) ports.push_back(instance.name + "." + candidate.name);
     return say(code::unknown_port, element, row, "the stack has no signal '" + signal + "'", nearestName(text, ports));
   }
   read_signals_.push_back(signal);
   std::vector<std::string> of_type, all;
-  for (const control::PortRow& candidate : found->values.row().ports) {
+  const std::vector<control::PortRow> ports = found->values.ports();
+  for (const control::PortRow& candidate : ports) {
     all.push_back(candidate.name);
     if (candidate.type == row.port_type) of_type.push_back(candidate.name);
   }
-  const auto& ports = found->values.row().ports;
   const auto known =
       std::find_if(ports.begin(), ports.end(), [&](const auto& candidate) { return candidate.name == port; });
   if (known == ports.end()) {
@@ -134,9 +139,16 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
         nearest.empty() ? "" : signal + "." + nearest);
   }
   if (known->type != row.port_type)
-    say(code::wrong_port_type, element, row,
-        "'" + text + "' is a " + known->type + ", but '" + row.name + "' takes a " + row.port_type,
-        of_type.size() == 1 ? signal + "." + of_type.front() : "");
+    return say(code::wrong_port_type, element, row,
+               "'" + text + "' is a " + known->type + ", but '" + row.name + "' takes a " + row.port_type,
+               of_type.size() == 1 ? signal + "." + of_type.front() : "");
+  if (!row.unit.empty() && !known->unit.empty() && known->unit != row.unit)
+    return say(code::wrong_port_unit, element, row,
+               "'" + text + "' is in " + known->unit + ", but '" + row.name + "' takes " + row.unit);
+  if (row.count > 0 && known->dimension > 0 && known->dimension != row.count)
+    say(code::wrong_port_unit, element, row,
+        "'" + text + "' has " + std::to_string(known->dimension) + " numbers, but '" + row.name + "' takes " +
+            std::to_string(row.count));
 }
 
 void ReferenceChecker::warnOfUnusedSignals(const std::vector<const CheckedElement*>& signals) {

@@ -16,6 +16,8 @@ class ReferenceChecker {
       : stack_(stack), robot_known_(robot_known), findings_(findings) {}
 
   void check(const CheckedElement& element);
+  /// The element and those inside.
+  void checkAll(const CheckedElement& element);
   /// Signals that nothing reads and that read nothing themselves.
   void warnOfUnusedSignals(const std::vector<const CheckedElement*>& signals);
 

@@ -37,6 +37,15 @@ struct ObjectDescription {
   std::vector<control::ElementValues> shapes;                      ///< of object.primitives, as read
 };
 
+/// An element as it was read, after includes, parameters, classes and defaults.
+struct ResolvedElement {
+  control::ElementValues values;                                   ///< each with its origin; `row().name` is the element
+  control::ElementValues options;                                  ///< of the back end that `backend` names; else empty
+  description::Place place;                                        ///< of its '<'
+  std::string path;                                                ///< "/stack/level[@priority=1]/impedance[@name=hand]"
+  int depth = 0;                                                   ///< 0 = <stack>
+};
+
 /// What a figure of the run should reach; at least one bound.
 struct TargetDescription {
   std::string metric;
@@ -69,6 +78,7 @@ struct Stack {
   control::ElementValues back_end;                                 ///< the options of the chosen back end
   std::vector<control::ElementValues> alternatives;                ///< the options given for other back ends
   RunOptions run;
+  std::vector<ResolvedElement> elements;                           ///< all but classes and includes, in document order
   std::map<std::string, std::string> files;                    ///< every file read → its content, for hashes and copies
   /// Every file that another one brought in → the places that did, innermost first.
   std::map<std::string, std::vector<description::Place>> included_from;

@@ -57,7 +57,7 @@ bool isWritten(const AttributeRow& row, const control::Value& value, const std::
   const std::size_t dot = value.text.find('.');
   return row.type == ValueType::port && dot != std::string::npos &&
          std::any_of(signals.begin(), signals.end(), [&](const ElementInstance& signal) {
-           const auto& ports = signal.values.row().ports;
+           const std::vector<control::PortRow> ports = signal.values.ports();
            return signal.name == value.text.substr(0, dot) &&
                   std::any_of(ports.begin(), ports.end(), [&](const control::PortRow& port) {
                     return port.name == value.text.substr(dot + 1) && port.type == row.port_type;
@@ -78,7 +78,11 @@ std::string attributesOf(const ElementRow& row, const ElementValues& values,
 
 std::string leaf(const std::string& indent, const ElementValues& values,
                  const std::vector<ElementInstance>& signals = {}) {
-  return indent + "<" + values.row().name + attributesOf(values.row(), values, signals) + "/>\n";
+  const std::string start = indent + "<" + values.row().name + attributesOf(values.row(), values, signals);
+  if (values.children.empty()) return start + "/>\n";
+  std::string out = start + ">\n";
+  for (const ElementValues& child : values.children) out += leaf(indent + "  ", child, signals);
+  return out + indent + "</" + values.row().name + ">\n";
 }
 
 std::string numbersText(const Eigen::VectorXd& numbers) {

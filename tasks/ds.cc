@@ -30,7 +30,7 @@ void DynamicalSystem::registerIn(Registry& registry) {
   row.attributes = {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link."},
       {.name = "target", .type = ValueType::reals, .unit = "m", .required = true,
-       .description = "Attractor x*, world axes.", .count = 3},
+       .description = "Attractor x*, world axes.", .count = 3, .reached_by = "frame"},
       {.name = "matrix", .type = ValueType::reals, .unit = "1/s", .default_text = "-1 0 0 0 -1 0 0 0 -1",
        .description = "A, by rows; its symmetric part must be negative definite.", .count = 9},
       {.name = "damping-along", .type = ValueType::real, .unit = "N s/m", .default_text = "130",

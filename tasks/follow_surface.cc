@@ -18,7 +18,8 @@ void FollowSurface::registerIn(Registry& registry) {
   row.attributes = {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link that follows."},
       {.name = "along", .type = ValueType::points, .unit = "m", .required = true,
-       .description = "Key positions, world axes, in order; they need not lie on the surface.", .count = 3},
+       .description = "Key positions, world axes, in order; they need not lie on the surface.", .count = 3,
+       .reached_by = "frame"},
       {.name = "on", .type = ValueType::port, .default_text = "touch.held",
        .description = "Contacts whose normals show the surface.", .port_type = "contact-set"},
       {.name = "normal-axis", .type = ValueType::reals, .unit = "1", .default_text = "1 0 0",

@@ -16,7 +16,7 @@ void Impedance::registerIn(Registry& registry) {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link."},
       {.name = "position", .type = ValueType::reals, .unit = "m",
        .description = "Reference position of the link's origin, world axes; not given: that of the first tick.",
-       .count = 3},
+       .count = 3, .reached_by = "frame"},
       {.name = "orientation", .type = ValueType::reals, .unit = "rad",
        .description = "Reference roll, pitch, yaw (fixed axes); not given: that of the first tick.", .count = 3},
       {.name = "stiffness", .type = ValueType::reals, .unit = "N/m", .default_text = "300 300 300",

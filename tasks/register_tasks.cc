@@ -8,12 +8,14 @@
 #include "tasks/impedance.h"
 #include "tasks/joint_limits.h"
 #include "tasks/make_contact.h"
+#include "tasks/phases.h"
 #include "tasks/posture.h"
 
 namespace tactus::tasks {
 
 void registerBuiltIns(control::Registry& registry) {
   Contacts::registerIn(registry);
+  Phases::registerIn(registry);
   ContactForce::registerIn(registry);
   ContactLimit::registerIn(registry);
   JointLimits::registerIn(registry);

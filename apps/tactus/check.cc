@@ -3,6 +3,7 @@
 #include "apps/tactus/errors.h"
 #include "apps/tactus/stack_arguments.h"
 #include "dsl/compile.h"
+#include "dsl/lint.h"
 #include "framework/runtime/file_error.h"
 
 namespace tactus::app {
@@ -15,6 +16,7 @@ struct CheckArguments {
   std::vector<std::string> set;
   std::string back_end;
   std::vector<std::string> plugins;
+  bool strict = false;
 };
 
 /// Findings of one file, warnings first, and the exit code that they call for.
@@ -24,11 +26,17 @@ struct Findings {
   int exit_code = exit_done;
 };
 
-Findings checkFile(Program& program, const StackOptions& options) {
+Findings checkFile(Program& program, const StackOptions& options, bool strict) {
   Findings findings;
   try {
     const dsl::Stack stack = program.read(options, &findings.warnings);
-    dsl::compile(stack, program.registry());
+    if (!strict) {
+      dsl::compile(stack, program.registry());
+      return findings;
+    }
+    const std::vector<dsl::Diagnostic> remarks = dsl::lint(stack, program.registry());
+    findings.warnings.insert(findings.warnings.end(), remarks.begin(), remarks.end());
+    if (!findings.warnings.empty()) findings.exit_code = exit_invalid_stack;
   } catch (const dsl::InvalidStack& invalid) {
     findings.errors = invalid.diagnostics;
     findings.exit_code = exitCode(findings.errors);
@@ -48,7 +56,7 @@ int check(const CheckArguments& arguments, bool json) {
   ordered_json errors = ordered_json::array(), warnings = ordered_json::array();
   int code = exit_done;
   for (const std::string& file : arguments.files) {
-    const Findings findings = checkFile(program, {file, arguments.set, arguments.back_end, {}, {}});
+    const Findings findings = checkFile(program, {file, arguments.set, arguments.back_end, {}, {}}, arguments.strict);
     for (const dsl::Diagnostic& warning : findings.warnings) warnings.push_back(toJson(warning));
     for (const dsl::Diagnostic& error : findings.errors) errors.push_back(toJson(error));
     if (code == exit_done) code = findings.exit_code;
@@ -56,7 +64,7 @@ int check(const CheckArguments& arguments, bool json) {
     for (const auto* list : {&findings.warnings, &findings.errors}) {
       for (const dsl::Diagnostic& diagnostic : *list) std::cerr << dsl::render(diagnostic) << "\n";
     }
-    if (findings.errors.empty()) std::cout << file << ": ok\n";
+    if (findings.exit_code == exit_done) std::cout << file << ": ok\n";
   }
   if (json) std::cout << ordered_json{{"errors", errors}, {"warnings", warnings}}.dump(2) << "\n";
   return code;
@@ -73,10 +81,14 @@ void addCheck(CLI::App& program, Context& context) {
       ->allow_extra_args(false);
   command->add_option("--backend", arguments->back_end, "Check for this back end instead of the stack's")
       ->type_name("BACKEND");
+  command->add_flag("--strict", arguments->strict,
+                    "Also look for what is hardly meant: dead levels, duplicate rows, unstable gains, places out of "
+                    "reach, …; then every warning is exit code 3");
   declarePlugins(*command, arguments->plugins);
   command->add_flag("--json", context.json, "{errors: [{file, line, column, code, message, suggestion?}], warnings}");
   command->footer(R"(Examples:
   tactus check examples/explore_table/stack.xml
+  tactus check --strict stack.xml
   tactus check --json a.xml b.xml)");
   command->callback([=, &context] { context.action = [=, &context] { return check(*arguments, context.json); }; });
 }

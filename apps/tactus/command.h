@@ -47,6 +47,7 @@ void addPlugins(CLI::App& program, Context& context);
 void addExplain(CLI::App& program, Context& context);
 void addFormat(CLI::App& program, Context& context);
 void addMigrate(CLI::App& program, Context& context);
+void addGraph(CLI::App& program, Context& context);
 void addSchema(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "apps/tactus/command.h"
+#include "apps/tactus/explain_stack.h"
 #include "apps/tactus/explain_tick.h"
 #include "apps/tactus/program.h"
 #include "apps/tactus/stack_arguments.h"
@@ -21,8 +22,12 @@ struct ExplainArguments {
   std::string type;
   StackOptions stack;                                              ///< with --at
   std::optional<double> at;                                        ///< s
+  bool resolved = false;
   std::vector<std::string> plugins;
 };
+
+/// What stands for a file, rather than for the name of an element.
+bool isFile(const std::string& type) { return type.ends_with(".xml") || type.find('/') != std::string::npos; }
 
 int list(const control::ElementTable& table, bool json) {
   ordered_json all = ordered_json::array();
@@ -46,6 +51,15 @@ int explain(const ExplainArguments& arguments, bool json) {
     tick.stack.file = arguments.type;
     return explainTick(tick, json);
   }
+  const bool stack = std::filesystem::is_regular_file(arguments.type) || isFile(arguments.type);
+  if (arguments.resolved && arguments.type.empty()) throw UsageError("--resolved needs the stack that it asks about");
+  if (arguments.resolved || stack) {
+    if (std::filesystem::is_directory(arguments.type))
+      throw UsageError("'" + arguments.type + "' is a folder: --at SECONDS says which tick of a run is explained");
+    StackOptions options = arguments.stack;
+    options.file = arguments.type;
+    return explainStack(options, arguments.plugins, json);
+  }
   Program program(arguments.plugins);
   for (const std::string& refusal : program.loadFolders()) std::cerr << "refused: " << refusal << "\n";
   const control::ElementTable& table = program.registry().elements();
@@ -61,8 +75,8 @@ int explain(const ExplainArguments& arguments, bool json) {
     out += (out.empty() ? "" : "\n") + dsl::elementText(row);
   }
   if (found.empty()) {
-    if (std::filesystem::exists(arguments.type))
-      throw UsageError("'" + arguments.type + "' is a file: --at SECONDS says which tick of it is explained");
+    if (std::filesystem::is_directory(arguments.type))
+      throw UsageError("'" + arguments.type + "' is a folder: --at SECONDS says which tick of a run is explained");
     const std::string nearest = dsl::nearestName(arguments.type, names);
     const std::string hint = nearest.empty() ? "'tactus explain' lists what there is" : "did you mean '" + nearest + "'?";
     throw UsageError("nothing is called '" + arguments.type + "'; " + hint);
@@ -75,12 +89,17 @@ int explain(const ExplainArguments& arguments, bool json) {
 
 void addExplain(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand(
-      "explain", "What an element means and takes, or who took whose freedom in a tick; alone: all elements");
+      "explain",
+      "What an element means and takes, what a stack's values are and where they come from, or who took whose freedom in "
+      "a tick; alone: all elements");
   const auto arguments = std::make_shared<ExplainArguments>();
   command
       ->add_option("TYPE|STACK|RUN", arguments->type,
-                   "An element or a back end: impedance, level, sphere, qp, …; with --at a stack or a run folder")
+                   "An element or a back end: impedance, level, sphere, qp, …; a stack; with --at a stack or a run folder")
       ->type_name("");
+  command->add_flag("--resolved", arguments->resolved,
+                    "Of a stack: every value after includes, parameters, classes and defaults, with its origin (a stack's "
+                    "file without --at means this)");
   command->add_option("--at", arguments->at, "Run to this time and print the priority x-ray of its tick")
       ->type_name("SECONDS")
       ->check(timeOfTick());
@@ -93,8 +112,9 @@ void addExplain(CLI::App& program, Context& context) {
       ->allow_extra_args(false);
   declarePlugins(*command, arguments->plugins);
   command->add_flag("--json", context.json,
-                    "{elements: [{name, kind, description, source?, attributes, ports, children}]}; with --at {time, "
-                    "levels, tasks, limits, …}");
+                    "{elements: [{name, kind, description, source?, attributes, ports, children}]}; of a stack "
+                    "{stack, elements: [{element, path, values: [{name, value, origin, …}]}]}; with --at {time, levels, "
+                    "tasks, limits, …}");
   command->footer(R"(The x-ray tells for each task the rank that it wanted and was granted, the directions that it lost
 and to whom, active inequalities, torque limits, and torque by task.  Of a run folder the stack runs again and its log
 is checked.
@@ -103,6 +123,7 @@ Examples:
   tactus explain
   tactus explain impedance
   tactus explain acme.wiggle --plugin build/acme.so --json
+  tactus explain examples/explore_table/stack.xml --set press=1
   tactus explain examples/explore_table/stack.xml --at 2.5
   tactus explain runs/explore-table-null-space-seed1 --at 2.5 --json)");
   command->callback([=, &context] { context.action = [=, &context] { return explain(*arguments, context.json); }; });

@@ -84,6 +84,7 @@ int runCommand(int argc, char** argv) {
   addPlugins(app, context);
   addReport(app, context);
   addExplain(app, context);
+  addGraph(app, context);
   addSchema(app, context);
   addFormat(app, context);
   addMigrate(app, context);

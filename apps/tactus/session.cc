@@ -52,7 +52,7 @@ Session::Session(dsl::Stack stack, const control::Registry& registry)
 template <class T>
 const T* Session::findPort(size_t signal, const std::string& port) const {
   const dsl::ElementInstance& instance = stack_.signals[signal];
-  for (const control::PortRow& row : instance.values.row().ports) {
+  for (const control::PortRow& row : instance.values.ports()) {
     if (row.name != port || row.type != control::PortType<T>::name) continue;
     for (const control::NamedSignal& named : controller_->signals()) {
       if (named.name == instance.name) return static_cast<const T*>(named.signal->port(port));

@@ -32,6 +32,8 @@ void checkAttribute(const std::string& where, const AttributeRow& row) {
   if (row.type == ValueType::port && row.port_type.empty()) refuse(attribute + " is a port without a port type");
   if (row.type == ValueType::points && row.count <= 0) refuse(attribute + " has points without a count");
   if (row.lower > row.upper) refuse(attribute + " has an empty range");
+  if (!row.reached_by.empty() && row.type != ValueType::reals && row.type != ValueType::points)
+    refuse(attribute + " is reached by a link, but holds no places");
   if (!row.default_text) return;
   if (row.required) refuse(attribute + " is required and has a default");
   std::string error;
@@ -57,7 +59,8 @@ void checkRow(const ElementRow& row) {
   }
   std::set<std::string> ports;
   for (const PortRow& port : row.ports) {
-    if (!isElementName(port.name)) refuse(where + ": '" + port.name + "' is not a name for a port");
+    const bool of_children = port.name.starts_with('@');
+    if (!isElementName(std::string_view(port.name).substr(of_children ? 1 : 0))) refuse(where + ": '" + port.name + "' is not a name for a port");
     if (!ports.insert(port.name).second) refuse(where + ": port '" + port.name + "' stands twice");
   }
   if (row.kind != ElementKind::signal && !row.ports.empty()) refuse(where + ": only signals have ports");

@@ -40,9 +40,11 @@ struct AttributeRow {
   double lower = -std::numeric_limits<double>::infinity();         ///< each number ≥ lower (> when lower_open)
   double upper = std::numeric_limits<double>::infinity();
   bool lower_open = false;
-  int count = 0;                                             ///< numbers in `reals`, or in a group of `points`; 0 = any
+  int count = 0;                               ///< numbers in `reals`, in a group of `points`, behind a `port`; 0 = any
   std::vector<std::string> choices = {};                   ///< for `choice`; for joints, links, ports: extra words
   std::string port_type = {};                                           ///< for `port`
+  /// Of places in the world: the `link` attribute whose link is to reach them, for `check --strict`; "" = none.
+  std::string reached_by = {};
   std::string since = {};                                  ///< version that brought it; "" = it was there from the start
   std::string deprecated = {};                             ///< what to write instead, a sentence; "" = it is not
   std::vector<std::string> formerly = {};                  ///< older names: read with a warning, rewritten by migrate
@@ -74,10 +76,11 @@ struct ChildRow {
 
 /// An output that a signal offers, written signal.port.
 struct PortRow {
-  std::string name;
-  std::string type;                                                ///< "contact-set", "point-set", "feature", …
-  std::string unit;
+  std::string name;                                                ///< "@child": one for each child of that name
+  std::string type;                                                ///< "scalar", "vector", "contact-set", "feature", …
+  std::string unit;                                                ///< "" for what has none, or more than one
   std::string description = {};
+  int dimension = 0;                                               ///< numbers of a value; 0 = as many as there are
 };
 
 enum class ElementKind { structure, shape, task, signal, back_end };

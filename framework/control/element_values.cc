@@ -200,6 +200,22 @@ Eigen::Vector3d ElementValues::vector3(std::string_view attribute) const {
   return {found[0], found[1], found[2]};
 }
 
+std::vector<PortRow> ElementValues::ports() const {
+  std::vector<PortRow> found;
+  for (const PortRow& port : row_->ports) {
+    if (!port.name.starts_with('@')) {
+      found.push_back(port);
+      continue;
+    }
+    for (const ElementValues& child : children) {
+      if (child.row().name != std::string_view(port.name).substr(1) || !child.has("name")) continue;
+      found.push_back(port);
+      found.back().name = child.text("name");
+    }
+  }
+  return found;
+}
+
 std::optional<Value> parseValue(const AttributeRow& row, const std::string& text, std::string& error) {
   Value value;
   value.text = text;

@@ -46,6 +46,13 @@ class ElementValues {
   const std::vector<double>& numbers(std::string_view attribute) const { return value(attribute).numbers; }
   Eigen::Vector3d vector3(std::string_view attribute) const;
 
+  /// The ports that a signal offers: those of its row, where "@phase" stands for one for each <phase> inside, by its
+  /// name.
+  std::vector<PortRow> ports() const;
+
+  std::vector<ElementValues> children;                             ///< of the elements inside, in their order
+  description::Place place;                                        ///< of the element's '<'; line 0 = made in code
+
  private:
   const ElementRow* row_ = nullptr;
   std::map<std::string, Value, std::less<>> values_;

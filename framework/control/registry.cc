@@ -57,6 +57,15 @@ void addBaseAttributes(ElementRow& row) {
 
 }  // namespace
 
+ElementError::ElementError(const ElementValues& child, std::string wrong, const std::string& message,
+                           std::vector<std::string> names)
+    : std::runtime_error(message), attribute(std::move(wrong)), candidates(std::move(names)), place(child.place) {
+  if (attribute.empty() || !child.has(attribute)) return;
+  const Value& value = child.value(attribute);
+  text = value.text;
+  if (value.origin.place.line > 0) place = value.origin.place;
+}
+
 std::vector<AttributeRow> activityAttributes() {
   return {{.name = "active",
            .type = ValueType::port,

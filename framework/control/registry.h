@@ -24,8 +24,14 @@ class ElementError : public std::runtime_error {
  public:
   ElementError(std::string attribute, const std::string& message, std::vector<std::string> candidates = {})
       : std::runtime_error(message), attribute(std::move(attribute)), candidates(std::move(candidates)) {}
+  /// At an attribute of an element inside; "" = at that element as a whole.
+  ElementError(const ElementValues& child, std::string attribute, const std::string& message,
+               std::vector<std::string> candidates = {});
+
   std::string attribute;                                           ///< "" = the element as a whole
   std::vector<std::string> candidates;                             ///< valid names, for the nearest one
+  description::Place place;                                        ///< of what is wrong inside; line 0 = see `attribute`
+  std::string text;                                                ///< that stands there
 };
 
 /// What a factory may look at while a stack is compiled.
@@ -46,6 +52,15 @@ class BuildContext {
   template <class T>
   const T& port(const std::string& attribute) const {
     return *static_cast<const T*>(ports_(attribute, values.text(attribute), PortType<T>::name));
+  }
+  /// The same of an element inside.
+  template <class T>
+  const T& port(const ElementValues& child, const std::string& attribute) const {
+    try {
+      return *static_cast<const T*>(ports_(attribute, child.text(attribute), PortType<T>::name));
+    } catch (const ElementError& error) {
+      throw ElementError(child, attribute, error.what(), error.candidates);
+    }
   }
   /// Index into Model::frames() of the link that the attribute names.
   int frame(const std::string& attribute) const;

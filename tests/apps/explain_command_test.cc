@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 
+#include <map>
 #include <set>
 
+#include "framework/runtime/file_error.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {
@@ -70,6 +72,72 @@ TEST(ExplainCommand, UnknownNameTellsTheNearest) {
   EXPECT_EQ(outcome.err, "tactus: nothing is called 'impedence'; did you mean 'impedance'?\n");
   EXPECT_THAT(tactus({"explain", "zzzzzz"}).err,
               HasSubstr("nothing is called 'zzzzzz'; 'tactus explain' lists what there is"));
+}
+
+/// Values of the stack, with who gave them: attribute, class, --set or the table.
+TEST(ExplainCommand, TellsWhereAStacksValuesComeFrom) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "<level priority=\"2\"><posture ",
+                                         "<defaults class=\"soft\"><posture stiffness=\"3\"/></defaults>\n"
+                                         "<level priority=\"2\"><posture class=\"soft\" ");
+  const Outcome outcome = tactus({"explain", stack, "--set", "press=0.7"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      force          0.7 N +--set press=0.7, .*press.xml:12:75\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      damping        0.4 N m s/rad +[^ ]*press.xml:14:"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    ramp           0.1 s +default\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    projection     [a-z]+ +default\n"));
+
+  const nlohmann::json json = tactus({"explain", stack, "--resolved", "--json"}).json();
+  EXPECT_EQ(json["stack"], "press");
+  std::map<std::string, std::string> origins;
+  for (const nlohmann::json& element : json["elements"])
+    if (element["element"] == "posture")
+      for (const nlohmann::json& value : element["values"]) origins[value["name"]] = value["origin"];
+  EXPECT_EQ(origins["stiffness"], "attribute") << "its own attribute goes before the class's";
+  EXPECT_EQ(origins["active"], "default");
+  EXPECT_EQ(tactus({"explain", "/nowhere.xml"}).exit_code, 6);
+  EXPECT_EQ(tactus({"explain", "--resolved"}).exit_code, 2);
+}
+
+TEST(GraphCommand, DrawsInThreeForms) {
+  const Outcome svg = tactus({"graph", data("press.xml")});
+  ASSERT_EQ(svg.exit_code, 0) << svg.err;
+  EXPECT_THAT(svg.out, AllOf(HasSubstr("<svg xmlns="), HasSubstr("touch.held (contact-set) → hold on")));
+  EXPECT_THAT(tactus({"graph", data("press.xml"), "--format", "dot"}).out, HasSubstr("\"signal/touch\" -> \"task/hold\""));
+  EXPECT_EQ(tactus({"graph", data("press.xml"), "--json"}).json()["edges"][0]["attribute"], "on");
+  EXPECT_EQ(tactus({"graph", data("press.xml"), "--format", "png"}).exit_code, 2);
+  EXPECT_EQ(tactus({"graph", data("press.xml"), "--out", "/no/where.svg"}).exit_code, 6);
+}
+
+TEST(FormatCommand, PrintsChecksOrWrites) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.xml");
+  runtime::writeFile(file, "<a><b/>\n</a>");
+  EXPECT_EQ(tactus({"fmt", file}).out, "<a>\n  <b/>\n</a>\n");
+  EXPECT_EQ(tactus({"fmt", "--check", file}).exit_code, 1);
+  EXPECT_EQ(tactus({"fmt", "--write", file}).exit_code, 0);
+  EXPECT_EQ(tactus({"fmt", "--check", file}).exit_code, 0);
+  EXPECT_EQ(contentOf(file), "<a>\n  <b/>\n</a>\n");
+  runtime::writeFile(file, "<a><b></a>");
+  const Outcome broken = tactus({"fmt", "--write", file});
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_THAT(broken.err, HasSubstr("a.xml:1:7: error[E003]"));
+  EXPECT_EQ(contentOf(file), "<a><b></a>") << "what cannot be read is not rewritten";
+  EXPECT_EQ(tactus({"fmt", "/nowhere.xml"}).exit_code, 6);
+}
+
+TEST(MigrateCommand, SaysThatThereIsNothingToRewrite) {
+  const Outcome outcome = tactus({"migrate", data("press.xml")});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("press.xml: nothing to rewrite"));
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST(SchemaCommand, HasThreeForms) {
+  EXPECT_THAT(tactus({"schema", "xsd"}).out, HasSubstr("<xs:element name=\"posture\">"));
+  EXPECT_THAT(tactus({"schema", "md"}).out, HasSubstr("| `stiffness` | numbers | N m/rad |"));
+  EXPECT_EQ(nlohmann::json::parse(tactus({"schema", "json"}).out)["format"], 1);
+  EXPECT_EQ(tactus({"schema", "yaml"}).exit_code, 2);
 }
 
 }  // namespace

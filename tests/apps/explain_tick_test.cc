@@ -131,7 +131,7 @@ TEST(ExplainTick, WhatCannotBeAsked) {
               HasSubstr("--at 1.5 is after the end of the run, 1 s"));
   EXPECT_THAT(error({"explain", data("press.xml"), "--at", "-1"}), HasSubstr("'-1' is not a number from 0 to"));
   EXPECT_THAT(error({"explain", "--at", "1"}), HasSubstr("--at needs the stack or the run folder"));
-  EXPECT_THAT(error({"explain", data("press.xml")}), HasSubstr("is a file: --at SECONDS says which tick"));
+  EXPECT_THAT(error({"explain", TACTUS_SOURCE_DIR}), HasSubstr("is a folder: --at SECONDS says which tick"));
   EXPECT_EQ(tactus({"explain", "/nowhere.xml", "--at", "1"}).exit_code, 6);
   EXPECT_EQ(tactus({"explain", folder.path(), "--at", "1"}).exit_code, 6);
   const std::string run = folder.file("run");

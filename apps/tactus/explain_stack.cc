@@ -1,0 +1,119 @@
+#include "apps/tactus/explain_stack.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "apps/tactus/text.h"
+#include "dsl/element_text.h"
+#include "dsl/source_text.h"
+
+namespace tactus::app {
+namespace {
+
+using control::AttributeRow;
+using control::ElementValues;
+using control::Origin;
+using control::Value;
+using nlohmann::ordered_json;
+
+std::string placeText(const description::Place& place) {
+  return place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+}
+
+const char* keyOf(Origin::Kind kind) {
+  switch (kind) {
+    case Origin::Kind::table_default: return "default";
+    case Origin::Kind::defaults_class: return "class";
+    case Origin::Kind::attribute: return "attribute";
+    case Origin::Kind::command_line: return "command line";
+  }
+  return "";
+}
+
+/// "class soft, stack.xml:4:30", "--set press=1, stack.xml:9:57"
+std::string originText(const Origin& origin) {
+  std::string text;
+  switch (origin.kind) {
+    case Origin::Kind::table_default: text = "default"; break;
+    case Origin::Kind::defaults_class: text = "class " + origin.detail; break;
+    case Origin::Kind::attribute: break;
+    case Origin::Kind::command_line: text = origin.detail; break;
+  }
+  if (origin.place.line > 0) text += (text.empty() ? "" : ", ") + placeText(origin.place);
+  return text;
+}
+
+std::string padded(const std::string& text, size_t width) {
+  const auto characters = static_cast<size_t>(dsl::countCharacters(text));
+  return text + std::string(characters < width ? width - characters : 1, ' ');
+}
+
+/// On one line, with single blanks.
+std::string oneLine(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    if (!blank) out += c;
+    else if (!out.empty() && out.back() != ' ') out += ' ';
+  }
+  return out.empty() ? "empty" : out;
+}
+
+void writeValues(const ElementValues& values, const std::string& indent, std::string& out) {
+  for (const AttributeRow& row : values.row().attributes) {
+    if (!values.has(row.name)) continue;
+    const Value& value = values.value(row.name);
+    const std::string unit = dsl::unitText(row.unit);
+    const std::string shown = oneLine(value.text) + (unit.empty() ? "" : " " + unit);
+    out += padded(indent + padded(row.name, 14) + " " + shown, 64) + " " + originText(value.origin) + "\n";
+  }
+}
+
+void addValues(const ElementValues& values, ordered_json& json) {
+  for (const AttributeRow& row : values.row().attributes) {
+    if (!values.has(row.name)) continue;
+    const Value& value = values.value(row.name);
+    ordered_json entry{{"name", row.name}, {"value", value.text}};
+    if (!row.unit.empty()) entry["unit"] = row.unit;
+    entry["origin"] = keyOf(value.origin.kind);
+    if (!value.origin.detail.empty()) entry["detail"] = value.origin.detail;
+    if (value.origin.place.line > 0) {
+      entry["file"] = value.origin.place.file;
+      entry["line"] = value.origin.place.line;
+      entry["column"] = value.origin.place.column;
+    }
+    json.push_back(entry);
+  }
+}
+
+bool hasOptions(const dsl::ResolvedElement& element) { return !element.options.all().empty(); }
+
+}  // namespace
+
+int explainStack(const StackOptions& options, const std::vector<std::string>& plugins, bool json) {
+  Program program(plugins);
+  const dsl::Stack stack = readAloud(program, options);
+  ordered_json elements = ordered_json::array();
+  std::string out;
+  for (const dsl::ResolvedElement& element : stack.elements) {
+    const std::string indent(static_cast<size_t>(2 * element.depth), ' ');
+    out += padded(indent + "<" + element.values.row().name + ">", 64) + " " + placeText(element.place) + "\n";
+    writeValues(element.values, indent + "  ", out);
+    ordered_json attributes = ordered_json::array();
+    addValues(element.values, attributes);
+    if (hasOptions(element)) {
+      writeValues(element.options, indent + "  ", out);
+      addValues(element.options, attributes);
+    }
+    elements.push_back({{"element", element.values.row().name},
+                        {"path", element.path},
+                        {"file", element.place.file},
+                        {"line", element.place.line},
+                        {"column", element.place.column},
+                        {"values", attributes}});
+  }
+  std::cout << (json ? ordered_json{{"stack", stack.name}, {"elements", elements}}.dump(2) + "\n" : out);
+  return exit_done;
+}
+
+}  // namespace tactus::app
