@@ -23,14 +23,14 @@ bool isUsable(const TickTask& task) {
 
 /// Runs the step of one part of the stack, "task 'hold'"; what it throws becomes a TickError that names the part.
 template <class Step, class Name>
-void guarded(double time, Step step, Name name) {
-  const auto said = [&] { return name() + " failed at t = " + formatNumber(time) + " s: "; };
+void guarded(TickError::Part part, double time, Step step, Name name) {
+  const auto where = [&] { return name() + " failed at t = " + formatNumber(time) + " s"; };
   try {
     step();
   } catch (const std::exception& error) {
-    throw TickError(said() + error.what());
+    throw TickError(part, where(), error.what());
   } catch (...) {
-    throw TickError(said() + "it threw something that is not a std::exception");
+    throw TickError(part, where(), "it threw something that is not a std::exception");
   }
 }
 
@@ -108,10 +108,14 @@ void Controller::solveTick(const Sensed& sensed) {
   cache_.update(sensed.q, sensed.qd);
   const Tick now{sensed.time, period_, sensed, cache_};
   for (const NamedSignal& named : signals_) {
-    guarded(now.time, [&] { named.signal->update(now); }, [&] { return "signal '" + named.name + "'"; });
+    guarded(TickError::Part::signal, now.time, [&] { named.signal->update(now); },
+            [&] { return "signal '" + named.name + "'"; });
   }
   assembleProblem(now);
-  guarded(now.time, [&] { back_end_->solve(problem_, solution_); }, [] { return std::string("the back end"); });
+  guarded(TickError::Part::back_end, now.time, [&] { back_end_->solve(problem_, solution_); }, [&] {
+    const std::string& name = back_end_->recipe().back_end;
+    return name.empty() ? "the back end" : "back end '" + name + "'";
+  });
   chooseTorque();
 }
 
@@ -193,7 +197,7 @@ void Controller::fillRows(const Tick& tick, NamedTask& named, TickTask& rows) {
     named.task->update(tick, rows);
     checkRows(rows, named.task->capacity(), problem_.dof);
   };
-  guarded(tick.time, update, [&] { return "task '" + named.name + "'"; });
+  guarded(TickError::Part::task, tick.time, update, [&] { return "task '" + named.name + "'"; });
 }
 
 Controller::Place Controller::placeOf(std::string_view task) const {
