@@ -30,7 +30,7 @@ struct Capsule {
   // What came of it.
   control::Status status = control::Status::failed;
   std::string message;
-  bool threw = false;                                              ///< the back end did, saying `message`: no torque came
+  bool threw = false;                                              ///< the back end did, and said `message`
   bool late = false;
   int iterations = 0;
   Eigen::VectorXd torque;                                          ///< N m, b + g not included

@@ -9,8 +9,9 @@
 
 namespace tactus::app {
 
-/// Writes the first ticks of a run that failed, came late or broke the run because their back end threw into its
-/// folder, each as capsule-<tick>.json (dsl/capsule.h).  A capsule that cannot be written is a warning: no further one is tried, and the run goes on.
+/// Writes the first ticks of a run that failed or came late, and the one that broke it because its back end threw, into
+/// its folder, each as capsule-<tick>.json (dsl/capsule.h).  A capsule that cannot be written is a warning: no further
+/// one is tried, and the run goes on.
 class CapsuleKeeper final : public runtime::Observer {
  public:
   static constexpr int most_capsules = 5;

@@ -2,6 +2,7 @@
 
 #include "apps/tactus/errors.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/text.h"
 #include "dsl/compile.h"
 #include "framework/runtime/file_error.h"
 
@@ -58,7 +59,7 @@ int check(const CheckArguments& arguments, bool json) {
     }
     if (findings.errors.empty()) std::cout << file << ": ok\n";
   }
-  if (json) std::cout << ordered_json{{"errors", errors}, {"warnings", warnings}}.dump(2) << "\n";
+  if (json) std::cout << jsonText(ordered_json{{"errors", errors}, {"warnings", warnings}}, 2) << "\n";
   return code;
 }
 

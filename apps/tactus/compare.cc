@@ -217,7 +217,7 @@ int compare(const CompareArguments& arguments, bool json) {
                                 {"reference", labels.front()},
                                 {"sampled_ticks", sampler.problems().size()},
                                 {"backends", back_ends}};
-  std::cout << (json ? comparison.dump(2) + "\n" : comparisonTable(comparison) + why);
+  std::cout << (json ? jsonText(comparison, 2) + "\n" : comparisonTable(comparison) + why);
   return code;
 }
 

@@ -14,6 +14,7 @@
 #include "dsl/capsule.h"
 #include "dsl/nearest_name.h"
 #include "dsl/tick_file.h"
+#include "framework/control/refuse_torque.h"
 #include "framework/runtime/file_error.h"
 
 namespace tactus::app {
@@ -166,7 +167,7 @@ Answer answer(const control::Registry& registry, const Request& request, const c
   }
   answer.solve_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   // As the controller does: such a torque never reaches the robot.
-  if (!answer.solution.torque.allFinite()) answer.solution.torque.setZero();
+  if (!answer.solution.torque.allFinite()) control::refuseTorque(answer.solution);
   return answer;
 }
 
@@ -238,7 +239,7 @@ int solveOne(Program& program, const dsl::TickFile& file, const SolveArguments& 
               << capsule.back_end << ": " << reproduction->text(capsule, found) << "\n";
   }
   const std::string why = addConflict(file, solution, data);
-  std::cout << (json ? data.dump() + "\n" : summary(solution));
+  std::cout << (json ? jsonText(data) + "\n" : summary(solution));
   if (solution.status != control::Status::ok) {
     std::cerr << "tactus solve: " << dsl::statusName(solution.status)
               << (solution.message.empty() ? "" : ": " + solution.message) << "\n";
@@ -280,7 +281,7 @@ int solveAny(Program& program, const dsl::TickFile& file, const SolveArguments& 
     }
     all.push_back(std::move(entry));
   }
-  std::cout << (json ? all.dump() + "\n" : textTable(rows));
+  std::cout << (json ? jsonText(all) + "\n" : textTable(rows));
   if (!why.empty()) std::cerr << "tactus solve: " << why << "\n";
   return solved ? exit_done : exit_numerical;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/control/element_values.h"
+#include "framework/control/refuse_torque.h"
 
 namespace tactus::control {
 
@@ -132,14 +133,13 @@ void Controller::bearWeight(const Sensed& sensed) {
 }
 
 void Controller::chooseTorque() {
+  const bool finite = solution_.torque.allFinite();
+  if (!finite) refuseTorque(solution_);
   record_.status = solution_.status;
   record_.late = solution_.late;
   record_.limited = solution_.scale < 1;
-  const bool finite = solution_.torque.allFinite();
   const bool solved = solution_.status == Status::ok && finite;
   if (!solved) record_.unusable_task = findUnusableTask();
-  // A torque that is not finite must never reach the robot.
-  if (!finite) solution_.torque.setZero();
   wanted_ = solution_.torque + cache_.bias();
   unsolved_for_ = solved ? 0 : unsolved_for_ + period_;
   if (solved) {

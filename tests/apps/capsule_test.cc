@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "tests/apps/program.h"
 
@@ -204,6 +205,18 @@ TEST_P(CapsuleOfABackEnd, IsReproducedToTheBitAndAcceptedByOthers) {
   EXPECT_TRUE(cold_is_another > 0 || std::string(GetParam()) != "hqp") << "a start that changes nothing proves nothing";
 }
 
+// Rows that no programme has: 0, beyond the last, and the integer that has no positive twin.
+TEST_P(CapsuleOfABackEnd, TakesNoHarmFromAForgedWarmStart) {
+  nlohmann::json file = nlohmann::json::parse(contentOf(capsules.at(0)));
+  for (const int forged : {0, 99, -99, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
+    nlohmann::json& start = file["capsule"]["warm_start"];
+    start = {3, 3, forged, forged};
+    const Outcome outcome = tactus({"solve", folder.write("forged.json", file.dump()), "--json"});
+    EXPECT_LE(outcome.exit_code, 6) << forged << " " << outcome.err;
+    EXPECT_TRUE(outcome.json().contains("torque") || outcome.json().contains("errors")) << forged;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(BackEnds, CapsuleOfABackEnd, ::testing::Values("hqp", "qp/active-set", "null-space"),
                          [](const auto& info) {
                            std::string name = info.param;
@@ -221,6 +234,16 @@ TEST(Capsule, IsReproducedBecauseOfItsWarmStart) {
   EXPECT_THAT(outcome.err, HasSubstr("not reproduced: the run had status failed, this is ok; the torque is off by "));
   EXPECT_THAT(outcome.err, Not(HasSubstr("by the clock")));
   EXPECT_THAT(outcome.err, HasSubstr(" N m at joint "));
+}
+
+TEST(Capsule, WhoseWarmStartTheBackEndRefuses) {
+  const MoodyRun moody("/until=21");
+  nlohmann::json file = nlohmann::json::parse(contentOf(moody.capsule("capsule-20.json")));
+  file["capsule"]["warm_start"] = nlohmann::json::array();
+  const std::string other = moody.folder.write("other.json", file.dump());
+  const Outcome outcome = tactus({"solve", other, "--plugin", kPlugin});
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.err, HasSubstr(other + ": capsule.warm_start: the back end refuses it: "));
 }
 
 TEST(Capsule, OfAPluginThatIsNotThere) {
