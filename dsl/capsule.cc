@@ -62,7 +62,7 @@ void reserveRows(const JsonNode& node, TickProblem& problem) {
 Capsule readCapsule(const JsonNode& node, TickProblem& problem) {
   node.expectObject({"backend", "options", "warm_start", "capacities", "status", "torque", "tick", "time", "q", "qd",
                      "joints", "places", "stack"},
-                    {"deadline", "message", "late", "iterations"});
+                    {"deadline", "message", "threw", "late", "iterations"});
   const int dof = problem.dof;
   Capsule capsule;
   capsule.back_end = node.at("backend").text();
@@ -72,6 +72,7 @@ Capsule readCapsule(const JsonNode& node, TickProblem& problem) {
   reserveRows(node.at("capacities"), problem);
   capsule.status = readStatus(node.at("status"));
   if (node.has("message")) capsule.message = node.at("message").text();
+  if (node.has("threw")) capsule.threw = node.at("threw").flag();
   if (node.has("late")) capsule.late = node.at("late").flag();
   if (node.has("iterations")) capsule.iterations = node.at("iterations").integer(0, std::numeric_limits<int>::max());
   capsule.torque = node.at("torque").vector(dof);
@@ -120,6 +121,7 @@ std::string capsuleToJson(const TickProblem& problem, const Capsule& capsule) {
   json["capacities"] = std::move(capacities);
   json["status"] = statusName(capsule.status);
   if (!capsule.message.empty()) json["message"] = capsule.message;
+  if (capsule.threw) json["threw"] = true;
   json["late"] = capsule.late;
   json["iterations"] = capsule.iterations;
   json["torque"] = exactNumbers(capsule.torque);

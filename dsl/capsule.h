@@ -14,7 +14,7 @@
 ///
 ///   capsule: {backend, options: {name: text}, deadline?: {iterations?, seconds?}, warm_start: [integers],
 ///             capacities: [[rows that each task may have] of each level],
-///             status, message?, late, iterations, torque,
+///             status, message?, threw?, late, iterations, torque,
 ///             tick, time (s), q, qd, joints: [names], places: {task: "file:line:column"}, stack: the resolved XML}
 ///
 /// The problem of a tick that went wrong may hold what no other tick file may: the numbers "nan", "inf" and "-inf", and
@@ -30,6 +30,7 @@ struct Capsule {
   // What came of it.
   control::Status status = control::Status::failed;
   std::string message;
+  bool threw = false;                                              ///< the back end did, and said `message`
   bool late = false;
   int iterations = 0;
   Eigen::VectorXd torque;                                          ///< N m, b + g not included

@@ -75,7 +75,7 @@ int JsonNode::integer(int least, int most) const {
 std::vector<int> JsonNode::integers() const {
   std::vector<int> values;
   for (std::size_t i = 0; i < size(); ++i)
-    values.push_back(at(i).integer(std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+    values.push_back(at(i).integer(-std::numeric_limits<int>::max(), std::numeric_limits<int>::max()));
   return values;
 }
 

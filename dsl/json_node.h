@@ -34,7 +34,7 @@ class JsonNode {
   /// Finite; where the document is one that may hold others, also "nan", "inf" and "-inf".
   double number() const;
   int integer(int least, int most = 1'000'000) const;
-  std::vector<int> integers() const;
+  std::vector<int> integers() const;                               ///< each with its negative
   Eigen::VectorXd vector(int size) const;
   /// null stands for `infinity`.
   Eigen::VectorXd limits(int size, double infinity) const;

@@ -226,7 +226,7 @@ std::string solutionToJson(const TickProblem& problem, const control::TickSoluti
                    {"complementarity", solution.kkt.complementarity}};
   json["iterations"] = solution.iterations;
   json["solve_us"] = solve_us;
-  return json.dump() + "\n";
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace tactus::dsl

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 
-#include "dsl/capsule.h"
 #include "dsl/read_stack.h"
 #include "framework/control/conflict.h"
 #include "framework/runtime/file_error.h"
@@ -12,8 +11,11 @@ namespace tactus::app {
 CapsuleKeeper::CapsuleKeeper(const Session& session, const std::string& folder)
     : stack_(session.stack()),
       folder_(folder),
-      before_(session.controller().backEnd().warmStart()),
       joints_(session.controller().model().jointNames()) {}
+
+void CapsuleKeeper::before(const control::Controller& controller) {
+  if (hasRoom()) before_ = controller.backEnd().warmStart();
+}
 
 void CapsuleKeeper::observe(const runtime::ObservedTick& tick) {
   const control::TickRecord& record = tick.controller.record();
@@ -22,14 +24,31 @@ void CapsuleKeeper::observe(const runtime::ObservedTick& tick) {
     return;
   }
   const bool failed = record.fallback || record.status != control::Status::ok || tick.controller.solution().late;
-  const bool room = static_cast<int>(files_.size()) < most_capsules && warnings_.empty();
   if (record.status == control::Status::infeasible && !infeasible_) {
     infeasible_ = tick.controller.problem();
     infeasible_time_ = tick.sensed.time;
   }
-  if (failed && room) write(tick);
-  if (room) before_ = tick.controller.backEnd().warmStart();
+  if (failed && hasRoom()) {
+    const control::TickSolution& solution = tick.controller.solution();
+    dsl::Capsule capsule = capsuleOf(tick.controller, tick.sensed);
+    capsule.status = solution.status;
+    capsule.message = solution.message;
+    capsule.late = solution.late;
+    capsule.iterations = solution.iterations;
+    capsule.torque = solution.torque;
+    write(tick.controller.problem(), capsule);
+  }
   ++tick_;
+}
+
+void CapsuleKeeper::broken(const runtime::BrokenTick& tick) {
+  if (tick.error.part != control::TickError::Part::back_end || !hasRoom()) return;
+  dsl::Capsule capsule = capsuleOf(tick.controller, tick.sensed);
+  capsule.status = control::Status::failed;
+  capsule.message = tick.error.reason;
+  capsule.threw = true;
+  capsule.torque.setZero(tick.controller.model().dof());
+  write(tick.controller.problem(), capsule);
 }
 
 std::vector<std::string> CapsuleKeeper::warnings() const {
@@ -42,30 +61,27 @@ std::vector<std::string> CapsuleKeeper::warnings() const {
   return warnings;
 }
 
-void CapsuleKeeper::write(const runtime::ObservedTick& tick) {
-  const control::TickSolution& solution = tick.controller.solution();
+dsl::Capsule CapsuleKeeper::capsuleOf(const control::Controller& controller, const control::Sensed& sensed) const {
   dsl::Capsule capsule;
-  capsule.back_end = stack_.back_end.row().name;
-  for (const auto& [name, value] : stack_.back_end.all()) capsule.options[name] = value.text;
+  capsule.back_end = controller.backEnd().recipe().back_end;
+  capsule.options = controller.backEnd().recipe().options;
   capsule.warm_start = before_;
-  capsule.deadline = tick.controller.backEnd().deadline();
-  capsule.status = solution.status;
-  capsule.message = solution.message;
-  capsule.late = solution.late;
-  capsule.iterations = solution.iterations;
-  capsule.torque = solution.torque;
+  capsule.deadline = controller.backEnd().deadline();
   capsule.tick = tick_;
-  capsule.time = tick.sensed.time;
-  capsule.q = tick.sensed.q;
-  capsule.qd = tick.sensed.qd;
-  capsule.joints = tick.controller.model().jointNames();
+  capsule.time = sensed.time;
+  capsule.q = sensed.q;
+  capsule.qd = sensed.qd;
+  capsule.joints = joints_;
   capsule.places = taskPlaces(stack_);
   capsule.stack = dsl::writeResolved(stack_);
+  return capsule;
+}
 
+void CapsuleKeeper::write(const control::TickProblem& problem, const dsl::Capsule& capsule) {
   const std::string name = "capsule-" + std::to_string(tick_) + ".json";
   const std::string path = folder_ + "/" + name;
   try {
-    runtime::writeFile(path, dsl::capsuleToJson(tick.controller.problem(), capsule));
+    runtime::writeFile(path, dsl::capsuleToJson(problem, capsule));
     files_.push_back(name);
   } catch (const runtime::FileError& error) {
     std::error_code ignored;                                       // half a capsule is none

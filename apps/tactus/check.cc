@@ -2,6 +2,7 @@
 
 #include "apps/tactus/errors.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/text.h"
 #include "dsl/compile.h"
 #include "dsl/lint.h"
 #include "framework/runtime/file_error.h"
@@ -66,7 +67,7 @@ int check(const CheckArguments& arguments, bool json) {
     }
     if (findings.exit_code == exit_done) std::cout << file << ": ok\n";
   }
-  if (json) std::cout << ordered_json{{"errors", errors}, {"warnings", warnings}}.dump(2) << "\n";
+  if (json) std::cout << jsonText(ordered_json{{"errors", errors}, {"warnings", warnings}}, 2) << "\n";
   return code;
 }
 

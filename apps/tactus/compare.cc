@@ -204,7 +204,7 @@ int compare(const CompareArguments& arguments, bool json) {
     runtime::writeFile(arguments.page, comparisonPage(comparison));
     std::cerr << "page: " << arguments.page << "\n";
   }
-  std::cout << (json ? comparison.dump(2) + "\n" : comparisonText(comparison));
+  std::cout << (json ? jsonText(comparison, 2) + "\n" : comparisonText(comparison));
   return code;
 }
 

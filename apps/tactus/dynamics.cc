@@ -327,7 +327,7 @@ int printDynamics(const DynamicsArguments& arguments) {
     json["potential_energy"] = finite(-whole.mass * gravity_W.dot(whole.centre_of_mass), "potential_energy");
   }
   json["frames"] = frames(model, workspace);
-  std::cout << json.dump(2) << "\n";
+  std::cout << jsonText(json, 2) << "\n";
   return exit_done;
 }
 

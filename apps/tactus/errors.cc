@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "apps/tactus/interrupt.h"
+#include "apps/tactus/text.h"
 #include "framework/control/controller.h"
 #include "framework/dynamics/model.h"
 #include "framework/runtime/file_error.h"
@@ -19,7 +20,7 @@ int say(const Context& context, int code, const std::string& message) {
   std::cerr << "tactus: " << message << "\n";
   if (context.json) {
     const ordered_json error{{"message", message}};
-    std::cout << ordered_json{{"errors", ordered_json::array({error})}}.dump(2) << "\n";
+    std::cout << jsonText(ordered_json{{"errors", ordered_json::array({error})}}, 2) << "\n";
   }
   return code;
 }
@@ -57,7 +58,7 @@ int reportErrors(const Context& context) {
       std::cerr << dsl::render(diagnostic) << "\n";
       errors.push_back(toJson(diagnostic));
     }
-    if (context.json) std::cout << ordered_json{{"errors", errors}}.dump(2) << "\n";
+    if (context.json) std::cout << jsonText(ordered_json{{"errors", errors}}, 2) << "\n";
     return exitCode(invalid.diagnostics);
   } catch (const UsageError& error) {
     return say(context, exit_usage, error.what());

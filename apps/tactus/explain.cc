@@ -40,7 +40,7 @@ int list(const control::ElementTable& table, bool json) {
       out += "  " + row.name + ": " + row.description + "\n";
     }
   }
-  std::cout << (json ? ordered_json{{"elements", all}}.dump(2) + "\n" : out);
+  std::cout << (json ? jsonText(ordered_json{{"elements", all}}, 2) + "\n" : out);
   return exit_done;
 }
 
@@ -81,7 +81,7 @@ int explain(const ExplainArguments& arguments, bool json) {
     const std::string hint = nearest.empty() ? "'tactus explain' lists what there is" : "did you mean '" + nearest + "'?";
     throw UsageError("nothing is called '" + arguments.type + "'; " + hint);
   }
-  std::cout << (json ? ordered_json{{"elements", found}}.dump(2) + "\n" : out);
+  std::cout << (json ? jsonText(ordered_json{{"elements", found}}, 2) + "\n" : out);
   return exit_done;
 }
 

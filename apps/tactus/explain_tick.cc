@@ -36,6 +36,7 @@ StackOptions stackOf(const std::string& folder, const StackOptions& asked) {
 std::string firstDifference(const std::string& logged, const std::string& again) {
   const std::vector<std::string> a = split(logged, '\n'), b = split(again, '\n');
   const std::vector<std::string> columns = split(a.front(), ',');
+  if (a.front().empty()) return "the log is empty";
   for (size_t row = 0; row < b.size(); ++row) {
     if (b[row].empty()) continue;
     if (row >= a.size() || a[row].empty()) return "the log ends after " + std::to_string(row - 1) + " rows";
@@ -99,7 +100,7 @@ int explainTick(const ExplainTickArguments& arguments, bool json) {
                                                            : "the run does not repeat: " + difference) << "\n";
   }
   if (json) {
-    std::cout << data.dump(2) << "\n";
+    std::cout << jsonText(data, 2) << "\n";
   } else {
     std::cout << session.stack().name << " with " << session.backEndName() << " at t = " << rounded(time, 6) << " s\n"
               << xrayText({"x-ray", data});

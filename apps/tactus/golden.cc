@@ -219,7 +219,7 @@ int verify(const GoldenArguments& arguments, bool json) {
   for (const std::string& name : arguments.cases) {
     code = std::max(code, verifyCase(program, name, arguments.keep, results));
   }
-  if (json) std::cout << ordered_json{{"cases", results}}.dump(2) << "\n";
+  if (json) std::cout << jsonText(ordered_json{{"cases", results}}, 2) << "\n";
   return code;
 }
 

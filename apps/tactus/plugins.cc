@@ -31,7 +31,7 @@ int list(const std::vector<std::string>& paths, bool json) {
   }
   if (json) {
     const ordered_json all{{"plugins", plugins}, {"refused", refused}, {"searched", program.plugins().folders()}};
-    std::cout << all.dump(2) << "\n";
+    std::cout << jsonText(all, 2) << "\n";
   } else {
     std::cout << textTable(rows);
     std::cerr << "searched: " << joined(program.plugins().folders()) << "\n";

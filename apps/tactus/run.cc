@@ -7,6 +7,7 @@
 #include "apps/tactus/report.h"
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/text.h"
 #include "apps/tactus/xray_view.h"
 #include "dsl/read_stack.h"
 #include "framework/runtime/file_error.h"
@@ -92,7 +93,7 @@ int run(const RunArguments& arguments, bool json) {
   });
 
   if (json) {
-    std::cout << description.dump(2) << "\n";
+    std::cout << jsonText(description, 2) << "\n";
   } else {
     std::cout << summaryTable(description);
   }

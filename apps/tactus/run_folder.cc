@@ -81,7 +81,7 @@ std::string unusualTicks(const ordered_json& ticks) {
 void writeJson(const std::string& path, const ordered_json& json) {
   const std::string fresh = path + ".new";
   try {
-    runtime::writeFile(fresh, json.dump(2) + "\n");
+    runtime::writeFile(fresh, jsonText(json, 2) + "\n");
     fs::rename(fresh, path);
   } catch (...) {
     std::error_code ignored;

@@ -14,6 +14,7 @@
 #include "dsl/capsule.h"
 #include "dsl/nearest_name.h"
 #include "dsl/tick_file.h"
+#include "framework/control/refuse_torque.h"
 #include "framework/runtime/file_error.h"
 
 namespace tactus::app {
@@ -72,14 +73,6 @@ std::unique_ptr<control::BackEnd> makeBackEnd(const control::Registry& registry,
   }
 }
 
-dsl::TickFile readFile(const std::string& file) {
-  try {
-    return dsl::readTickFile(file);
-  } catch (const dsl::TickFileError& error) {
-    throw runtime::FileError(file, error.what());
-  }
-}
-
 std::string summary(const control::TickSolution& solution) {
   std::string text = solution.message.empty() ? "" : solution.message + "\n";
   std::vector<std::vector<std::string>> rows{{"level", "rank", "nullity", "residual", "active"}};
@@ -101,6 +94,7 @@ struct Request {
 
 struct Answer {
   control::TickSolution solution;
+  bool threw = false;                                              ///< the back end did; the message says so
   double solve_us = 0;
 };
 
@@ -113,14 +107,35 @@ Request recorded(Program& program, const dsl::Capsule& capsule, const SolveArgum
   return {choice.name, valuesOf(program.backEndRow(choice.name), chosenOptions(arguments, choice)), &capsule};
 }
 
+/// Whether the words of --backend name what the capsule recorded: its back end, and no variant that it was not.
+bool isRecorded(const BackEndChoice& choice, const dsl::Capsule& capsule) {
+  return choice.name == capsule.back_end &&
+         std::all_of(choice.options.begin(), choice.options.end(), [&](const auto& option) {
+           const auto recorded = capsule.options.find(option.first);
+           return recorded != capsule.options.end() && recorded->second == option.second;
+         });
+}
+
 Request requested(Program& program, const dsl::TickFile& file, const SolveArguments& arguments) {
   if (arguments.back_end.empty()) {
     if (file.capsule) return recorded(program, *file.capsule, arguments);
     throw UsageError("--backend is missing; only a capsule of a run names its own");
   }
   const BackEndChoice choice = program.backEndChoice(arguments.back_end);
+  if (file.capsule && isRecorded(choice, *file.capsule)) return recorded(program, *file.capsule, arguments);
   return {choice.name, valuesOf(program.backEndRow(choice.name), chosenOptions(arguments, choice)), nullptr};
 }
+
+/// A plugin's back end may refuse what somebody made of its numbers.
+void resume(control::BackEnd& back_end, const control::WarmStart& warm_start) {
+  try {
+    back_end.setWarmStart(warm_start);
+  } catch (const std::exception& error) {
+    throw dsl::TickFileError("capsule.warm_start", std::string("the back end refuses it: ") + error.what());
+  }
+}
+
+std::string thrown(const std::string& what) { return "the back end threw: " + what; }
 
 Answer answer(const control::Registry& registry, const Request& request, const control::TickProblem& problem) {
   using Clock = std::chrono::steady_clock;
@@ -134,12 +149,25 @@ Answer answer(const control::Registry& registry, const Request& request, const c
     back_end->setDeadline(deadline);
   }
   back_end->prepare(problem, answer.solution);
-  if (request.capsule) back_end->setWarmStart(request.capsule->warm_start);
+  if (request.capsule) resume(*back_end, request.capsule->warm_start);
+  const control::TickSolution fresh = answer.solution;
+  const auto threw = [&](const std::string& what) {
+    answer.solution = fresh;                                       // not what it may have left half done
+    answer.solution.status = control::Status::failed;
+    answer.solution.message = thrown(what);
+    answer.threw = true;
+  };
   const auto start = Clock::now();
-  back_end->solve(problem, answer.solution);
+  try {
+    back_end->solve(problem, answer.solution);
+  } catch (const std::exception& error) {
+    threw(error.what());
+  } catch (...) {
+    threw("it threw something that is not a std::exception");
+  }
   answer.solve_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   // As the controller does: such a torque never reaches the robot.
-  if (!answer.solution.torque.allFinite()) answer.solution.torque.setZero();
+  if (!answer.solution.torque.allFinite()) control::refuseTorque(answer.solution);
   return answer;
 }
 
@@ -149,29 +177,36 @@ ordered_json toJson(const control::TickProblem& problem, const Request& request,
 
 /// How an answer compares with the one that a capsule holds.
 struct Reproduction {
-  bool exact = false;                                              ///< status and every bit of the torque
+  bool exact = false;                                              ///< status, every bit of the torque, what was thrown
   double difference = 0;                                           ///< largest of a joint, N m
   std::string joint;                                               ///< where
 
-  Reproduction(const dsl::Capsule& capsule, const control::TickSolution& solution) {
-    const Eigen::VectorXd& torque = solution.torque;
+  Reproduction(const dsl::Capsule& capsule, const Answer& answer) {
+    const Eigen::VectorXd& torque = answer.solution.torque;
     const size_t bytes = sizeof(double) * static_cast<size_t>(torque.size());
-    exact = solution.status == capsule.status && std::memcmp(torque.data(), capsule.torque.data(), bytes) == 0;
+    exact = answer.solution.status == capsule.status && answer.threw == capsule.threw &&
+            (!answer.threw || answer.solution.message == thrown(capsule.message)) &&
+            std::memcmp(torque.data(), capsule.torque.data(), bytes) == 0;
     if (torque.size() == 0) return;
     Eigen::Index at = 0;
     difference = (torque - capsule.torque).cwiseAbs().maxCoeff(&at);
     joint = capsule.joints[static_cast<size_t>(at)];
   }
 
-  std::string text(const dsl::Capsule& capsule, const control::TickSolution& solution) const {
-    if (exact) return "reproduced to the bit";
+  std::string text(const dsl::Capsule& capsule, const Answer& answer) const {
+    const control::TickSolution& solution = answer.solution;
+    if (exact) return answer.threw ? "reproduced: the back end threw again" : "reproduced to the bit";
     std::string text = "not reproduced: ";
+    if (capsule.threw) return text + "in the run " + thrown(capsule.message);
+    if (answer.threw) return text + "in the run it did not throw";
     if (solution.status != capsule.status) {
       text += "the run had status " + std::string(dsl::statusName(capsule.status)) + ", this is " +
               dsl::statusName(solution.status) + "; ";
     }
     return text + "the torque is off by " + rounded(difference) + " N m at joint " + joint +
-           (capsule.late ? " (the tick was late by the clock, which does not repeat)" : "");
+           (capsule.late && std::isfinite(capsule.deadline.seconds)
+                ? " (the tick was late by the clock, which does not repeat)"
+                : "");
   }
 };
 
@@ -194,17 +229,17 @@ int solveOne(Program& program, const dsl::TickFile& file, const SolveArguments& 
   std::optional<Reproduction> reproduction;
   if (request.capsule) {
     const dsl::Capsule& capsule = *request.capsule;
-    reproduction.emplace(capsule, solution);
+    reproduction.emplace(capsule, found);
     data["capsule"] = {{"reproduced", reproduction->exact},
                        {"difference_Nm", reproduction->difference},
                        {"tick", capsule.tick},
                        {"time", capsule.time},
                        {"recorded_status", dsl::statusName(capsule.status)}};
     std::cerr << "tactus solve: tick " << capsule.tick << ", t = " << rounded(capsule.time, 6) << " s, "
-              << capsule.back_end << ": " << reproduction->text(capsule, solution) << "\n";
+              << capsule.back_end << ": " << reproduction->text(capsule, found) << "\n";
   }
   const std::string why = addConflict(file, solution, data);
-  std::cout << (json ? data.dump() + "\n" : summary(solution));
+  std::cout << (json ? jsonText(data) + "\n" : summary(solution));
   if (solution.status != control::Status::ok) {
     std::cerr << "tactus solve: " << dsl::statusName(solution.status)
               << (solution.message.empty() ? "" : ": " + solution.message) << "\n";
@@ -236,26 +271,32 @@ int solveAny(Program& program, const dsl::TickFile& file, const SolveArguments& 
     ordered_json entry = toJson(file.problem, request, found);
     const std::string sentence = addConflict(file, solution, entry);
     if (why.empty()) why = sentence;
+    if (!solution.message.empty()) std::cerr << "tactus solve: " << request.name << ": " << solution.message << "\n";
     rows.push_back({request.name, dsl::statusName(solution.status), rounded(solution.torque.cwiseAbs().maxCoeff()),
                     std::to_string(solution.iterations), rounded(found.solve_us, 3)});
     if (file.capsule) {
-      const Reproduction reproduction(*file.capsule, solution);
+      const Reproduction reproduction(*file.capsule, found);
       entry["capsule"] = {{"reproduced", reproduction.exact}, {"difference_Nm", reproduction.difference}};
       rows.back().push_back(reproduction.exact ? "the same bits" : rounded(reproduction.difference));
     }
     all.push_back(std::move(entry));
   }
-  std::cout << (json ? all.dump() + "\n" : textTable(rows));
+  std::cout << (json ? jsonText(all) + "\n" : textTable(rows));
   if (!why.empty()) std::cerr << "tactus solve: " << why << "\n";
   return solved ? exit_done : exit_numerical;
 }
 
 int solve(const SolveArguments& arguments, bool json) {
   Program program(arguments.plugins);
-  if (arguments.back_end == any_back_end) return solveAny(program, readFile(arguments.file), arguments, json);
+  const bool any = arguments.back_end == any_back_end;
   // A word that names no back end is refused whatever the file is.
-  if (!arguments.back_end.empty()) program.backEndChoice(arguments.back_end);
-  return solveOne(program, readFile(arguments.file), arguments, json);
+  if (!any && !arguments.back_end.empty()) program.backEndChoice(arguments.back_end);
+  try {
+    const dsl::TickFile file = dsl::readTickFile(arguments.file);
+    return any ? solveAny(program, file, arguments, json) : solveOne(program, file, arguments, json);
+  } catch (const dsl::TickFileError& error) {
+    throw runtime::FileError(arguments.file, error.what());
+  }
 }
 
 }  // namespace
@@ -268,7 +309,7 @@ void addSolve(CLI::App& program, Context& context) {
       ->type_name("");
   command
       ->add_option("--backend", arguments->back_end,
-                   "null-space, qp, qp/nlopt, …; any: all of them, side by side; without it the one of a capsule")
+                   "null-space, qp, qp/nlopt, …; any: all of them; none, or its own: that of a capsule as it was")
       ->type_name("BACKEND");
   for (const char* name : named_options) {
     command->add_option(std::string("--") + name, arguments->named[name], "Option of the back end")

@@ -7,6 +7,18 @@
 #include "framework/runtime/file_error.h"
 
 namespace tactus::app {
+namespace {
+
+std::filesystem::path temporaryPlace() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (error) throw runtime::FileError("TMPDIR", "is no folder for temporary files: " + error.message());
+  return folder;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() : TemporaryFolder(temporaryPlace() / "tactus-") {}
 
 TemporaryFolder::TemporaryFolder(const std::filesystem::path& stem) : path(stem.string() + "XXXXXX") {
   if (!::mkdtemp(path.data())) throw runtime::FileError(path, "cannot be created", errno);

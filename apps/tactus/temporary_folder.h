@@ -8,8 +8,9 @@ namespace tactus::app {
 /// A new folder whose name begins with `stem` and a few letters more, taken away at the end.
 class TemporaryFolder {
  public:
-  /// Throws FileError.
-  explicit TemporaryFolder(const std::filesystem::path& stem = std::filesystem::temp_directory_path() / "tactus-");
+  /// Both throw FileError.  Without a stem it stands where TMPDIR says.
+  TemporaryFolder();
+  explicit TemporaryFolder(const std::filesystem::path& stem);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

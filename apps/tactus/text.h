@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,5 +24,8 @@ std::string rounded(double value, int digits = 4);
 
 /// A table with aligned columns: the first to the left, all others to the right; the first row is the head.
 std::string textTable(const std::vector<std::vector<std::string>>& rows);
+
+/// The document, whatever bytes its texts hold: what is not UTF-8 becomes U+FFFD.  Without indent in one line.
+std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
 
 }  // namespace tactus::app

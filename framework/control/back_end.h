@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,12 @@ struct Deadline {
 /// What a back end carries from one tick to the next, as plain numbers of its own.
 using WarmStart = std::vector<int>;
 
+/// What a back end was made of: its element and the text of each option.  Empty for one that no registry made.
+struct Recipe {
+  std::string back_end;
+  std::map<std::string, std::string> options;
+};
+
 /// Turns a tick problem into a torque.
 ///
 /// `prepare` takes the memory for every problem of the given shape (same levels, tasks and capacities);
@@ -49,6 +56,8 @@ class BackEnd {
   virtual ~BackEnd() = default;
 
   const Abilities& abilities() const { return abilities_; }
+  const Recipe& recipe() const { return recipe_; }
+  void setRecipe(Recipe recipe) { recipe_ = std::move(recipe); }
   void prepare(const TickProblem& shape, TickSolution& solution);
   void solve(const TickProblem& problem, TickSolution& solution) { doSolve(problem, solution); }
 
@@ -71,6 +80,7 @@ class BackEnd {
   virtual void doSolve(const TickProblem& problem, TickSolution& solution) = 0;
 
   Abilities abilities_;
+  Recipe recipe_;
   Deadline deadline_;
   bool reports_ranks_ = true;
 };

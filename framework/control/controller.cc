@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/control/element_values.h"
+#include "framework/control/refuse_torque.h"
 
 namespace tactus::control {
 
@@ -23,14 +24,14 @@ bool isUsable(const TickTask& task) {
 
 /// Runs the step of one part of the stack, "task 'hold'"; what it throws becomes a TickError that names the part.
 template <class Step, class Name>
-void guarded(double time, Step step, Name name) {
-  const auto said = [&] { return name() + " failed at t = " + formatNumber(time) + " s: "; };
+void guarded(TickError::Part part, double time, Step step, Name name) {
+  const auto where = [&] { return name() + " failed at t = " + formatNumber(time) + " s"; };
   try {
     step();
   } catch (const std::exception& error) {
-    throw TickError(said() + error.what());
+    throw TickError(part, where(), error.what());
   } catch (...) {
-    throw TickError(said() + "it threw something that is not a std::exception");
+    throw TickError(part, where(), "it threw something that is not a std::exception");
   }
 }
 
@@ -108,10 +109,14 @@ void Controller::solveTick(const Sensed& sensed) {
   cache_.update(sensed.q, sensed.qd);
   const Tick now{sensed.time, period_, sensed, cache_};
   for (const NamedSignal& named : signals_) {
-    guarded(now.time, [&] { named.signal->update(now); }, [&] { return "signal '" + named.name + "'"; });
+    guarded(TickError::Part::signal, now.time, [&] { named.signal->update(now); },
+            [&] { return "signal '" + named.name + "'"; });
   }
   assembleProblem(now);
-  guarded(now.time, [&] { back_end_->solve(problem_, solution_); }, [] { return std::string("the back end"); });
+  guarded(TickError::Part::back_end, now.time, [&] { back_end_->solve(problem_, solution_); }, [&] {
+    const std::string& name = back_end_->recipe().back_end;
+    return name.empty() ? "the back end" : "back end '" + name + "'";
+  });
   chooseTorque();
 }
 
@@ -128,14 +133,13 @@ void Controller::bearWeight(const Sensed& sensed) {
 }
 
 void Controller::chooseTorque() {
+  const bool finite = solution_.torque.allFinite();
+  if (!finite) refuseTorque(solution_);
   record_.status = solution_.status;
   record_.late = solution_.late;
   record_.limited = solution_.scale < 1;
-  const bool finite = solution_.torque.allFinite();
   const bool solved = solution_.status == Status::ok && finite;
   if (!solved) record_.unusable_task = findUnusableTask();
-  // A torque that is not finite must never reach the robot.
-  if (!finite) solution_.torque.setZero();
   wanted_ = solution_.torque + cache_.bias();
   unsolved_for_ = solved ? 0 : unsolved_for_ + period_;
   if (solved) {
@@ -193,7 +197,7 @@ void Controller::fillRows(const Tick& tick, NamedTask& named, TickTask& rows) {
     named.task->update(tick, rows);
     checkRows(rows, named.task->capacity(), problem_.dof);
   };
-  guarded(tick.time, update, [&] { return "task '" + named.name + "'"; });
+  guarded(TickError::Part::task, tick.time, update, [&] { return "task '" + named.name + "'"; });
 }
 
 Controller::Place Controller::placeOf(std::string_view task) const {

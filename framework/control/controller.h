@@ -45,7 +45,12 @@ struct ControllerOptions {
 /// A task, signal or back end that threw, or broke its promise, in a tick; the message names it and the time.
 class TickError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  enum class Part { signal, task, back_end };
+  /// "task 'hold' failed at t = 0.1 s" and what it said.
+  TickError(Part part, const std::string& where, const std::string& reason)
+      : std::runtime_error(where + ": " + reason), part(part), reason(reason) {}
+  Part part;                                                       ///< back_end: the problem of the tick is whole
+  std::string reason;
 };
 
 /// Whose torque a tick applied.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tactus::control {
@@ -69,6 +70,7 @@ KktResidual KktCheck::residual(const ConstrainedLeastSquares& programme, const E
     const double norm = scaled.col(i).norm();
     if (norm > 0) scaled.col(i) /= norm;
   }
+  if (!std::isfinite(gradient.squaredNorm()) || !scaled.allFinite()) return {worst, worst, worst};
   // −gradient less a nonnegative combination of rows: what is left is the nearest point of the rows' polar cone.
   const LeastDistance::Outcome outcome = least_distance_.solve(scaled, zero_.head(near), -gradient);
   const Eigen::VectorXd left = least_distance_.x();

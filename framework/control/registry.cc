@@ -166,7 +166,12 @@ std::unique_ptr<Signal> Registry::makeSignal(const BuildContext& context) const 
 }
 
 std::unique_ptr<BackEnd> Registry::makeBackEnd(const ElementValues& values) const {
-  return factoryOf(back_ends_, values)(values);
+  std::unique_ptr<BackEnd> back_end = factoryOf(back_ends_, values)(values);
+  if (!back_end) throw ElementError("", "its factory made no back end");
+  Recipe recipe{values.row().name, {}};
+  for (const auto& [name, value] : values.all()) recipe.options[name] = value.text;
+  back_end->setRecipe(std::move(recipe));
+  return back_end;
 }
 
 std::vector<std::string> Registry::names(ElementKind kind) const {

@@ -96,7 +96,7 @@ class Registry {
   const ElementTable& elements() const { return elements_; }
   std::unique_ptr<Task> makeTask(const BuildContext& context) const;      ///< by context.values.row().name
   std::unique_ptr<Signal> makeSignal(const BuildContext& context) const;
-  std::unique_ptr<BackEnd> makeBackEnd(const ElementValues& values) const;
+  std::unique_ptr<BackEnd> makeBackEnd(const ElementValues& values) const;  ///< with its recipe
   std::vector<std::string> names(ElementKind kind) const;
 
  private:

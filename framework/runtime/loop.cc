@@ -14,6 +14,17 @@ void endWith(Ending ending, const std::exception& error, LoopResult& result) {
   result.error = std::current_exception();
 }
 
+/// The tick; one that throws is shown to the observers first.
+const Eigen::VectorXd& tickOf(control::Controller& controller, const control::Sensed& sensed,
+                              const std::vector<Observer*>& observers) {
+  try {
+    return controller.tick(sensed);
+  } catch (const control::TickError& error) {
+    for (Observer* observer : observers) observer->broken({sensed, controller, error});
+    throw;
+  }
+}
+
 }  // namespace
 
 LoopResult runLoop(Plant& plant, control::Controller& controller, double duration,
@@ -33,8 +44,9 @@ LoopResult runLoop(Plant& plant, control::Controller& controller, double duratio
         break;
       }
       const control::Sensed& sensed = plant.sense();
+      for (Observer* observer : observers) observer->before(controller);
       const auto before = Clock::now();
-      const Eigen::VectorXd& torque = controller.tick(sensed);
+      const Eigen::VectorXd& torque = tickOf(controller, sensed, observers);
       const double tick_us = Microseconds(Clock::now() - before).count();
       for (Observer* observer : observers) observer->observe({sensed, controller, torque, tick_us});
       plant.advance(torque, controller.period());

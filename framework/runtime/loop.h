@@ -29,7 +29,8 @@ struct LoopResult {
 };
 
 /// Controller and plant in turn, at the controller's period, for `duration` seconds or until `stop` is raised:
-/// sense, tick, observers in their order, advance.  What observers throw besides FileError goes through.
+/// sense, tick, observers in their order, advance.  What observers throw besides FileError goes through.  The tick that
+/// throws reaches them as `broken`.
 LoopResult runLoop(Plant& plant, control::Controller& controller, double duration,
                    const std::vector<Observer*>& observers, const std::atomic<bool>& stop);
 

@@ -12,11 +12,22 @@ struct ObservedTick {
   double tick_us;                                                  ///< wall-clock time of Controller::tick alone
 };
 
+/// A tick that threw, with which the run ends.
+struct BrokenTick {
+  const control::Sensed& sensed;
+  const control::Controller& controller;
+  const control::TickError& error;
+};
+
 /// Looks at every tick of a run and changes nothing.
 class Observer {
  public:
   virtual ~Observer() = default;
+  /// Just before a tick, after all that was switched since the last one.
+  virtual void before(const control::Controller&) {}
   virtual void observe(const ObservedTick& tick) = 0;
+  /// Instead of `observe`.
+  virtual void broken(const BrokenTick&) {}
 };
 
 }  // namespace tactus::runtime

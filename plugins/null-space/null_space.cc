@@ -69,6 +69,11 @@ void NullSpace::doSolve(const TickProblem& problem, TickSolution& solution) {
   }
 
   work.problem.toTorque(work.total, solution.torque);
+  const bool overflows = !solution.torque.allFinite();
+  if (overflows) {
+    solution.torque.setZero();
+    work.total.setZero();
+  }
   if (problem.torque_limits) {
     const control::TorqueScaling scaling = control::scaleIntoLimits(*problem.torque_limits, solution.torque);
     solution.scale = scaling.scale;
@@ -77,6 +82,10 @@ void NullSpace::doSolve(const TickProblem& problem, TickSolution& solution) {
       solution.status = Status::infeasible;
       solution.message = "no multiple of the torque lies within the torque limits";
     }
+  }
+  if (overflows) {
+    solution.status = Status::failed;
+    solution.message = "the torque overflows: Jacobians, forces or masses are too large or too small to work with";
   }
   work.problem.reportResiduals(problem, work.total, solution);
 }

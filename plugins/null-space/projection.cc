@@ -1,6 +1,7 @@
 #include "plugins/null-space/projection.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::null_space {
 namespace {
@@ -69,7 +70,10 @@ void Projection::nearest(PriorityFactor& factor, const ConstColumnsRef& inequali
     bounds_[count] = weight == 1 ? 0 : (1 - weight) * std::max(0.0, row.dot(t) / norm);
     candidates_[count++] = j;
   }
-  if (count > 0) {
+  if (count > 0 && !std::isfinite(point.squaredNorm())) {
+    counts_.failed = true;
+    t.setZero();
+  } else if (count > 0) {
     const auto outcome =
         least_distance_.solve(rows_.topLeftCorner(free, count), bounds_.head(count), point, release_);
     counts_.failed = outcome != control::LeastDistance::Outcome::solved;

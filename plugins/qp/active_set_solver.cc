@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <limits>
+
 #include "plugins/qp/active_set.h"
 #include "plugins/qp/solvers.h"
 
@@ -49,7 +52,8 @@ class ActiveSetSolver final : public ProgrammeSolver {
   int active(int i) const override { return active_set_->active(i); }
   control::WarmStart warmStart() const override { return start_; }
   void setWarmStart(const control::WarmStart& start) override {
-    if (start.size() <= start_.capacity()) start_ = start;
+    const auto fits = [](int number) { return number != 0 && number != std::numeric_limits<int>::min(); };
+    if (start.size() <= start_.capacity() && std::all_of(start.begin(), start.end(), fits)) start_ = start;
   }
 
  private:

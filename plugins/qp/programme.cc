@@ -4,6 +4,16 @@
 
 namespace tactus::qp {
 
+bool isUsable(const Programme& programme) {
+  const int n = programme.variables;
+  const auto F = programme.F.topLeftCorner(programme.objective_rows, programme.dense);
+  const auto ridge = programme.ridge.head(n);
+  const double target = programme.t.head(programme.objective_rows).squaredNorm() +
+                        ridge.cwiseProduct(programme.reference.head(n)).squaredNorm();
+  return std::isfinite(F.squaredNorm() + ridge.squaredNorm() + target) &&
+         programme.A.topLeftCorner(n, programme.rows).allFinite();
+}
+
 void expand(const Programme& programme, control::ConstrainedLeastSquares& plain, std::vector<int>& origins) {
   const int n = programme.variables;
   plain.variables = n;

@@ -31,6 +31,9 @@ struct Programme {
   auto row(int j) const { return A.col(j).head(variables); }
 };
 
+/// Whether the squares that every solver takes stay finite.
+bool isUsable(const Programme& programme);
+
 /// The same programme in the plain form, for solvers and checks that know no structure.  `origins` gets, for each of
 /// its inequality rows, the row of `programme` that it came from.  Takes memory.
 void expand(const Programme& programme, control::ConstrainedLeastSquares& plain, std::vector<int>& origins);

@@ -66,6 +66,12 @@ void QpBackEnd::doSolve(const TickProblem& problem, TickSolution& solution) {
     return;
   }
   work.programme.build(problem, work.whitened);
+  if (!isUsable(work.programme.programme())) {
+    solution.status = Status::failed;
+    solution.message = "weights, units and masses together make numbers that are too large to work with";
+    fallBack(problem, solution);
+    return;
+  }
   const ProgrammeSolver::Answer answer = solver_->solve(work.programme.programme(), deadline(), work.x);
   solution.kkt = answer.kkt;
   solution.has_kkt = answer.verdict == ProgrammeSolver::Verdict::done;

@@ -29,6 +29,11 @@ class ReferenceSolver final : public ProgrammeSolver {
     reduction_->reduce(plain_);
     const LeastDistanceProgramme& reduced = reduction_->leastDistance();
     Answer answer;
+    if (!reduced.rows.allFinite() || !reduced.bounds.allFinite()) {
+      answer.status = "its programme overflows";
+      answer.kkt = {1, 1, 1};
+      return answer;
+    }
     for (const double tolerance : polish_tolerances) {
       const SolverReport report = rows_.solve(reduced, tolerance, v_);
       reduction_->restore(v_, point_);

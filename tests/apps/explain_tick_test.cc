@@ -120,6 +120,21 @@ TEST(ExplainTick, RunsKeepTwoXraysAndShowThem) {
   EXPECT_THAT(contentOf(run + "/report.html"), Not(HasSubstr("x-ray")));
 }
 
+TEST(ExplainTick, AnEmptyLogAndNoPlaceForTemporaryFilesAreSaid) {
+  const TemporaryFolder folder;
+  const std::string run = folder.file("run");
+  ASSERT_EQ(tactus({"run", data("press.xml"), "--duration", "0.01", "--out", run}).exit_code, 0);
+  folder.write("run/log.csv", "");
+  const Outcome empty = tactus({"explain", run, "--at", "0"});
+  EXPECT_EQ(empty.exit_code, 1);
+  EXPECT_THAT(empty.err, HasSubstr("the run does not repeat: the log is empty\n"));
+  Settings nowhere;
+  nowhere.environment = {"TMPDIR=/nowhere"};
+  const Outcome homeless = tactus({"explain", data("press.xml"), "--at", "0"}, nowhere);
+  EXPECT_EQ(homeless.exit_code, 6);
+  EXPECT_THAT(homeless.err, HasSubstr("tactus: TMPDIR: is no folder for temporary files: "));
+}
+
 TEST(ExplainTick, WhatCannotBeAsked) {
   const TemporaryFolder folder;
   const auto error = [](const std::vector<std::string>& arguments) {

@@ -101,6 +101,28 @@ TEST(SolveCommand, UnknownBackEnd) {
   EXPECT_THAT(outcome.err, HasSubstr("there is no back end 'hopq'; back ends: hqp, null-space, qp"));
 }
 
+TEST(SolveCommand, NumbersAtTheEndOfTheirRangeFailInWords) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("tick.json", R"({"format": "tactus-tick/1", "dof": 2,
+      "mass_matrix": [[1, 0], [0, 1]], "torque_limits": {"lower": [1e-188, -1], "upper": [1e-160, 1e-193]},
+      "levels": [{"priority": 1, "weight": 1e-308, "tasks": [{"name": "wall", "relation": "inequality",
+      "jacobian": [[1, 0]], "force": [0], "contact": true, "force_max": 0}]}]})");
+  for (const std::string solver : {"qp/ipopt", "qp/nlopt"}) {
+    const Outcome outcome = tactus({"solve", file, "--backend", solver});
+    EXPECT_EQ(outcome.exit_code, 5) << solver;
+    EXPECT_THAT(outcome.err, HasSubstr("failed: the solver's answer is not optimal (its programme overflows)\n"));
+  }
+}
+
+TEST(SolveCommand, AMessageThatIsNotUtf8IsJsonAllTheSame) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      tactus({"solve", folder.write("tick.json", "{\"format\": \xff"), "--backend", "hqp", "--json"});
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.json()["errors"][0]["message"].get<std::string>(), HasSubstr("not JSON: parse error"));
+  EXPECT_EQ(tactus({"run", "/nowhere/\xff.xml", "--json"}).json()["errors"].size(), 1u);
+}
+
 TEST(SolveCommand, FileThatIsNoTickProblem) {
   const TemporaryFolder folder;
   EXPECT_EQ(tactus({"solve", "/nowhere.json", "--backend", "null-space"}).exit_code, 6);

@@ -8,6 +8,7 @@
 
 #include "plugins/null-space/null_space.h"
 #include "plugins/qp/solvers.h"
+#include "tests/plugins/met_shapes.h"
 #include "tests/plugins/random_problem.h"
 
 namespace tactus {
@@ -16,13 +17,18 @@ namespace {
 using control::Status;
 using test::ProblemSource;
 
-/// `most_failed`: weights of up to six levels, masses of condition 1e6 and units 1e6 apart leave some weighted programmes
-/// without a digit; those must say so.
+/// `most_failed`: weights of up to six levels, masses of condition 1e6 and units 1e6 apart leave some weighted
+/// programmes without a digit; those must say so.  Most of them leave their limits by a tenth of the torque: in the
+/// coordinates in which the programme is round a limit is smaller than what the solver takes for rounding, and an
+/// answer refined against the programme as it was given is no better.  The metric `inertia` sees no units: of a
+/// thousand it leaves 35.
 void expectBoundedWork(const std::function<std::unique_ptr<control::BackEnd>()>& make, unsigned seed, int most_failed) {
   ProblemSource source(seed);
+  test::MetShapes shapes;
   int ok = 0, infeasible = 0, late = 0, failed = 0;
   for (int k = 0; k < 1000; ++k) {
     control::TickProblem problem = source.contactProblem({.inequality_share = 0.4, .max_rows = 7}, 0.2, 0.3);
+    shapes.add(problem);
     problem.torque_limits = source.limits(problem.dof, 1);
     if (source.chance(0.2)) {                                      // limits that leave out 0
       problem.torque_limits->lower.array() += 2;
@@ -48,6 +54,7 @@ void expectBoundedWork(const std::function<std::unique_ptr<control::BackEnd>()>&
   EXPECT_GE(ok, 300);
   EXPECT_GE(late, 20);
   EXPECT_LE(failed, most_failed);
+  shapes.expectWide();
 }
 
 TEST(BoundedWork, OfTheCascades) {
@@ -60,7 +67,7 @@ TEST(BoundedWork, OfTheCascades) {
 TEST(BoundedWork, OfTheWeightedProgramme) {
   for (const qp::Objective objective : {qp::Objective::torque, qp::Objective::acceleration})
     expectBoundedWork([=] { return std::make_unique<qp::QpBackEnd>(qp::WeightedQpOptions{.objective = objective},
-                                                                   qp::makeActiveSetSolver()); }, 72, 400);
+                                                                   qp::makeActiveSetSolver()); }, 72, 320);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "tests/plugins/met_shapes.h"
 #include "tests/plugins/random_problem.h"
 
 namespace tactus::null_space {
@@ -29,6 +30,12 @@ constexpr int problems_per_law = 1000;
 // Many rows in few joints, which press in similar directions: rows that are held on the way must be released.
 RandomProblemOptions crowded() { return {.max_dof = 20, .inequality_share = 0.6, .copy_share = 0.1, .max_rows = 6}; }
 
+// In turn: any tasks, crowded ones, and up to 20 contact rows above any tasks.
+TickProblem anyProblem(ProblemSource& source, int turn) {
+  if (turn % 3 == 2) return source.contactProblem({}, 0.2);
+  return source.problem(turn % 3 == 1 ? crowded() : RandomProblemOptions{});
+}
+
 TickSolution solve(const TickProblem& problem, const NullSpaceOptions& options) {
   NullSpace back_end(options);
   TickSolution solution;
@@ -45,9 +52,11 @@ struct Met {
   int deficient = 0;
   int held = 0;
   int released = 0;
+  test::MetShapes shapes;
 
-  void add(const TickSolution& solution) {
+  void add(const TickProblem& problem, const TickSolution& solution) {
     ++problems;
+    shapes.add(problem);
     deficient += solution.rank_deficient_levels > 0;
     held += solution.rows_held;
     released += solution.rows_released;
@@ -69,13 +78,13 @@ TEST(NullSpace, Law1And2HoldForAllLevelsInTheAugmentedCascade) {
   ProblemSource source(1);
   Met met;
   while (met.problems < problems_per_law) {
-    const TickProblem problem = source.problem(met.problems % 2 ? RandomProblemOptions{} : crowded());
+    const TickProblem problem = anyProblem(source, met.problems);
     if (!noFade(problem)) continue;
     const NullSpaceOptions options;
     const TickSolution solution = solve(problem, options);
     ASSERT_EQ(solution.status, Status::ok) << solution.message;
     ASSERT_TRUE(solution.torque.allFinite());
-    met.add(solution);
+    met.add(problem, solution);
     for (int i = 0; i < static_cast<int>(problem.levels.size()); ++i) {
       EXPECT_LE(worstChange(problem, options, i, Relation::equality, solution.torque), law_tolerance);
       EXPECT_LE(worstChange(problem, options, i, Relation::inequality, solution.torque), law_tolerance);
@@ -86,6 +95,7 @@ TEST(NullSpace, Law1And2HoldForAllLevelsInTheAugmentedCascade) {
   EXPECT_GE(met.deficient, problems_per_law / 2);
   EXPECT_GE(met.held, problems_per_law);
   EXPECT_GE(met.released, 50);
+  met.shapes.expectWide(0.06);
 }
 
 TEST(NullSpace, Law1And2HoldForLevel1InTheSuccessiveCascadeAndNotBelow) {
@@ -93,12 +103,12 @@ TEST(NullSpace, Law1And2HoldForLevel1InTheSuccessiveCascadeAndNotBelow) {
   Met met;
   int disturbed = 0;
   while (met.problems < problems_per_law) {
-    const TickProblem problem = source.problem(met.problems % 2 ? RandomProblemOptions{} : crowded());
+    const TickProblem problem = anyProblem(source, met.problems);
     if (!noFade(problem)) continue;
     const NullSpaceOptions options{.cascade = Cascade::successive};
     const TickSolution solution = solve(problem, options);
     ASSERT_EQ(solution.status, Status::ok) << solution.message;
-    met.add(solution);
+    met.add(problem, solution);
     EXPECT_LE(worstChange(problem, options, 0, Relation::equality, solution.torque), law_tolerance);
     EXPECT_LE(worstChange(problem, options, 0, Relation::inequality, solution.torque), law_tolerance);
     for (int i = 1; i + 1 < static_cast<int>(problem.levels.size()); ++i)
@@ -107,6 +117,7 @@ TEST(NullSpace, Law1And2HoldForLevel1InTheSuccessiveCascadeAndNotBelow) {
   EXPECT_GE(met.deficient, problems_per_law / 2);
   EXPECT_GE(met.held, problems_per_law / 2);
   EXPECT_GE(met.released, 20);
+  met.shapes.expectWide(0.06);
   EXPECT_GE(disturbed, 100) << "the successive cascade is strict for level 1 only; lower levels must show it";
 }
 
@@ -142,7 +153,7 @@ TEST(NullSpace, Law6TheOrderOfTasksAndRowsChangesNothing) {
       ProblemSource source(4);
       Met met;
       while (met.problems < problems_per_law) {
-        const TickProblem problem = source.problem({});
+        const TickProblem problem = anyProblem(source, met.problems);
         if (!noFade(problem)) continue;
         const NullSpaceOptions options{.cascade = cascade, .inequalities = inequalities};
         // Where Algorithm 3 finds a row that the torque hardly presses on, rounding decides.
@@ -163,13 +174,14 @@ TEST(NullSpace, Law6TheOrderOfTasksAndRowsChangesNothing) {
         for (TickLevel& level : shuffled.levels) std::shuffle(level.tasks.begin(), level.tasks.end(), source.engine());
         const TickSolution a = solve(problem, options);
         const TickSolution b = solve(shuffled, options);
-        met.add(a);
+        met.add(problem, a);
         const double difference = test::inverseMassNorm(problem, a.torque - b.torque);
         EXPECT_LE(difference, law_tolerance * test::inverseMassNorm(problem, a.torque));
         for (std::size_t i = 0; i < a.levels.size(); ++i) EXPECT_EQ(a.levels[i].rank, b.levels[i].rank);
       }
       EXPECT_GE(met.deficient, problems_per_law / 2);
       EXPECT_GE(met.held, problems_per_law / 2);
+      met.shapes.expectWide(0.06);
     }
 }
 
@@ -177,7 +189,7 @@ TEST(NullSpace, RanksAndNullitiesAreThoseOfTheProjectedRows) {
   ProblemSource source(5);
   int problems = 0;
   while (problems < problems_per_law) {
-    const TickProblem problem = source.problem({});
+    const TickProblem problem = anyProblem(source, problems);
     const test::DenseRanks dense = test::denseRanks(problem, 1e-9, 1e-5);
     if (!dense.clear) continue;
     ++problems;
@@ -270,7 +282,7 @@ TEST(NullSpace, ExactProjectionIsTheNearestTorqueThatKeepsEveryRow) {
   for (int k = 0; k < 500; ++k) {
     const SmallProblem small = smallProblem(source);
     const TickSolution solution = solve(small.problem, {});
-    met.add(solution);
+    met.add(small.problem, solution);
     EXPECT_LE(test::inverseMassNorm(small.problem, solution.torque - small.expected),
               1e-9 * test::inverseMassNorm(small.problem, small.problem.levels[1].tasks[0].force));
   }
@@ -366,6 +378,25 @@ TEST(NullSpace, ScalesTheTorqueUniformlyIntoTheLimits) {
   EXPECT_EQ(impossible.status, Status::infeasible);
   EXPECT_EQ(impossible.message, "no multiple of the torque lies within the torque limits");
   EXPECT_TRUE((impossible.torque.array() >= 5).all() && (impossible.torque.array() <= 6).all());
+}
+
+TEST(NullSpace, ATorqueThatOverflowsIsNone) {
+  ProblemSource source(10);
+  int failed = 0;
+  for (const Cascade cascade : {Cascade::augmented, Cascade::successive, Cascade::consistent})
+    for (int k = 0; k < 100; ++k) {
+      TickProblem problem = source.contactProblem({.max_dof = 12});
+      TickTask& task = problem.levels.back().tasks[0];
+      task.relation = Relation::equality;
+      for (double& force : task.force) force *= std::pow(10, source.uniform(100, 305));
+      task.jacobian *= std::pow(10, source.uniform(-160, 160));
+      if (k % 2) problem.torque_limits = source.limits(problem.dof, 1);
+      const TickSolution solution = solve(problem, {.cascade = cascade});
+      EXPECT_TRUE(solution.torque.allFinite());
+      failed += solution.status == Status::failed;
+      EXPECT_EQ(solution.message.empty(), solution.status == Status::ok);
+    }
+  EXPECT_GE(failed, 50);
 }
 
 TEST(NullSpace, DegenerateProblemsStayFinite) {

@@ -24,7 +24,8 @@ struct RandomProblemOptions {
   double common_direction = 1.5;                                   ///< size of a part that all rows of a problem share
   double acceleration_share = 0.2;                                 ///< of the tasks
   int max_tasks = 3;                                               ///< per level
-  int max_rows = 4;                                                ///< per task
+  int max_rows = 4;                                                ///< per task that is no contact
+  int max_contact_rows = 20;                                       ///< of all contacts
 };
 
 class ProblemSource {
@@ -72,7 +73,11 @@ class ProblemSource {
   }
 
   control::TickTask task(const std::string& name, int dof, const RandomProblemOptions& options) {
-    control::TickTask task(name, integer(1, options.max_rows), dof);
+    return task(name, integer(1, options.max_rows), dof, options);
+  }
+
+  control::TickTask task(const std::string& name, int rows, int dof, const RandomProblemOptions& options) {
+    control::TickTask task(name, rows, dof);
     task.rows = task.capacity();
     for (int r = 0; r < task.rows; ++r) {
       Eigen::RowVectorXd row = gaussian(1, dof);
@@ -96,15 +101,20 @@ class ProblemSource {
                                       double friction_share = 0) {
     control::TickProblem problem = this->problem(options);
     problem.levels[0].tasks.clear();
+    const int rows = integer(2, options.max_contact_rows);
+    const int held = integer(1, rows - 1);
     for (const control::Relation relation : {control::Relation::equality, control::Relation::inequality}) {
-      const bool cones = relation == control::Relation::equality && chance(friction_share);
-      control::TickTask contacts = task(relation == control::Relation::equality ? "held" : "shy", problem.dof, options);
+      const bool equality = relation == control::Relation::equality;
+      const bool cones = equality && held >= 3 && chance(friction_share);
+      control::TickTask contacts =
+          task(equality ? "held" : "shy", equality ? held : rows - held, problem.dof, options);
       contacts.has_acceleration = false;
       if (cones) {
-        contacts = control::TickTask("held", 3, problem.dof);
-        contacts.rows = 3;
-        contacts.jacobian = gaussian(3, problem.dof);
-        contacts.force = Eigen::Vector3d(std::abs(normal()), normal(), normal());
+        contacts = control::TickTask("held", held / 3 * 3, problem.dof);
+        contacts.rows = contacts.capacity();
+        contacts.jacobian = gaussian(contacts.rows, problem.dof);
+        contacts.force = gaussian(contacts.rows, 1);
+        for (int n = 0; n < contacts.rows; n += 3) contacts.force[n] = std::abs(contacts.force[n]);
         contacts.friction = uniform(0.2, 1);
       } else {
         contacts.force = contacts.force.cwiseAbs();

@@ -6,6 +6,7 @@
 
 #include "plugins/null-space/null_space.h"
 #include "plugins/qp/solvers.h"
+#include "tests/plugins/met_shapes.h"
 #include "tests/plugins/random_problem.h"
 
 namespace tactus::qp {
@@ -58,10 +59,12 @@ TEST(WeightedQp, Law3TheExactCascadeIsTheTorqueProgrammeInTheInertiaMetric) {
   for (const Solver solver : solvers) {
     ProblemSource source(11);
     Met met;
+    test::MetShapes shapes;
     for (int problems = 0; problems < problems_per_law;) {
       const TickProblem problem = source.contactProblem({.max_levels = 2, .inequality_share = 0, .max_rows = 6});
       if (!test::denseRanks(problem, 1e-9, 1e-5).clear) continue;
       ++problems;
+      shapes.add(problem);
       null_space::NullSpace cascade({});
       TickSolution expected;
       cascade.prepare(problem, expected);
@@ -79,11 +82,12 @@ TEST(WeightedQp, Law3TheExactCascadeIsTheTorqueProgrammeInTheInertiaMetric) {
     }
     EXPECT_GE(met.deficient, 100);
     EXPECT_GE(met.held, 150);
+    shapes.expectWide(0.2, 2);
   }
 }
 
 RandomProblemOptions ordinary() {
-  return {.max_levels = 4, .inequality_share = 0.3, .max_log10_condition = 4, .max_log10_scale = 1};
+  return {.inequality_share = 0.3, .max_log10_condition = 4, .max_log10_scale = 1};
 }
 
 WeightedQpOptions randomOptions(ProblemSource& source) {
@@ -103,53 +107,114 @@ TickProblem limitedProblem(ProblemSource& source, const RandomProblemOptions& sh
   return problem;
 }
 
+// How many problems are tried; how many of them a solver may give up, saying so, and in how many the answers may differ.
+struct Most {
+  int problems = problems_per_law;
+  int own_failed = 0;
+  int reference_failed = 0;                                        // of each of Ipopt and NLopt
+  int differ = 0;
+};
+
 // Law 7 twice: the solvers' own numbers on problems of moderate condition, and polished ones on hard problems.
-void expectAgreement(unsigned seed, const RandomProblemOptions& shape, bool polish, int count) {
+void expectAgreement(unsigned seed, const RandomProblemOptions& shape, bool polish, const Most& most) {
   ProblemSource source(seed);
   Met met;
-  int limited = 0;
+  test::MetShapes shapes;
+  int limited = 0, own_failed = 0, differ = 0, reference_failed[] = {0, 0};
   double worst = 0;
-  for (int problems = 0; problems < count; ++problems) {
+  for (int problems = 0; problems < most.problems; ++problems) {
     const TickProblem problem = limitedProblem(source, shape);
     const WeightedQpOptions options = randomOptions(source);
     const TickSolution own = solve(problem, options, Solver::active_set);
-    ASSERT_EQ(own.status, Status::ok) << own.message << ", " << own.kkt.stationarity;
+    shapes.add(problem);
+    if (own.status == Status::failed) {
+      ++own_failed;
+      EXPECT_FALSE(own.message.empty());
+      continue;
+    }
+    ASSERT_EQ(own.status, Status::ok) << own.message;
     met.add(own);
     limited += problem.torque_limits.has_value();
     const double size = test::inverseMassNorm(problem, own.torque);
+    double difference = 0;
     for (const Solver solver : {Solver::ipopt, Solver::nlopt}) {
       const TickSolution other = solve(problem, options, solver, polish);
-      ASSERT_EQ(other.status, Status::ok) << other.message << ", " << other.kkt.stationarity;
-      const double difference = test::inverseMassNorm(problem, own.torque - other.torque);
-      EXPECT_LE(difference, solver_tolerance * size) << names[static_cast<int>(solver)];
-      if (size > 0) worst = std::max(worst, difference / size);
+      ASSERT_NE(other.status, Status::infeasible);
+      if (other.status == Status::ok)
+        difference = std::max(difference, test::inverseMassNorm(problem, own.torque - other.torque));
+      else
+        ++reference_failed[static_cast<int>(solver)];
     }
+    if (difference > solver_tolerance * size)
+      ++differ;
+    else if (size > 0)
+      worst = std::max(worst, difference / size);
   }
-  std::cout << "Ipopt and NLopt differ from active-set by at most " << worst << "; " << met.held
-            << " rows at their bounds in " << met.active << " problems, " << met.deficient << " rank-deficient, "
-            << limited << " with limits\n";
+  std::cout << "Ipopt and NLopt differ from active-set by at most " << worst << ", in " << differ
+            << " problems by more; " << own_failed << " not solved by active-set, " << reference_failed[0]
+            << " by Ipopt, " << reference_failed[1] << " by NLopt; " << met.held << " rows at their bounds in " << met.active << " problems, " << met.deficient
+            << " rank-deficient, " << limited << " with limits\n";
+  EXPECT_LE(own_failed, most.own_failed);
+  EXPECT_LE(differ, most.differ);
+  for (const int failed : reference_failed) EXPECT_LE(failed, most.reference_failed);
   EXPECT_GE(met.deficient, 100);
   EXPECT_GE(met.active, 100);
   EXPECT_GE(limited, 100);
+  shapes.expectWide(0.2, shape.max_levels);
 }
 
+// Without polish the reference solvers' own numbers lose their digits in a problem of a hundred, and their KKT residual
+// says so.
 TEST(WeightedQp, Law7TheSolversAgree) {
   RandomProblemOptions moderate = ordinary();
   moderate.max_log10_condition = 2;
   moderate.max_log10_scale = 0.3;
-  moderate.max_levels = 3;
-  moderate.max_dof = 40;                                           // beyond, Ipopt's own numbers lose digits
-  expectAgreement(12, moderate, false, 300);
+  expectAgreement(12, moderate, false, {.own_failed = 2, .reference_failed = 20});
 }
 
-TEST(WeightedQp, Law7HoldsOnHardProblemsWithPolish) { expectAgreement(13, ordinary(), true, problems_per_law); }
+// Up to four levels all is solved.
+TEST(WeightedQp, Law7HoldsOnHardProblemsWithPolish) {
+  RandomProblemOptions hard = ordinary();
+  hard.max_levels = 4;
+  expectAgreement(13, hard, true, {});
+}
+
+// With six levels and weights a hundred apart the last level counts 1e-10, and rows of other units in masses of
+// condition 1e4 leave it few digits or none.
+TEST(WeightedQp, Law7OfFiveAndSixLevelsHoldsButForAFewWithoutDigits) {
+  RandomProblemOptions deep = ordinary();
+  deep.min_levels = 5;
+  expectAgreement(19, deep, true, {.problems = 300, .own_failed = 10, .reference_failed = 10, .differ = 3});
+}
+
+// Known to fail: active-set says `ok` of this one, 60 % off.  Five levels at a ratio of 63 and a residual of 800 in the
+// strong rows: its stationarity, measured where a step's length is what it costs, is 4e-6, and the weakest direction
+// magnifies that beyond the answer.
+TEST(WeightedQp, DISABLED_AnAnswerWithoutDigitsInItsWeakDirectionsIsNotOk) {
+  ProblemSource source(13);
+  for (int k = 0; k < 131; ++k) {
+    limitedProblem(source, ordinary());
+    randomOptions(source);
+  }
+  const TickProblem problem = limitedProblem(source, ordinary());
+  const WeightedQpOptions options = randomOptions(source);
+  const TickSolution own = solve(problem, options, Solver::active_set);
+  const TickSolution other = solve(problem, options, Solver::ipopt);
+  ASSERT_EQ(other.status, Status::ok);
+  if (own.status == Status::ok) {
+    EXPECT_LE(test::inverseMassNorm(problem, own.torque - other.torque),
+              solver_tolerance * test::inverseMassNorm(problem, own.torque));
+  }
+}
 
 TEST(WeightedQp, AnswersKeepEveryConstraint) {
   for (const Solver solver : solvers) {
     ProblemSource source(14);
+    test::MetShapes shapes;
     int cones = 0;
     for (int problems = 0; problems < 150; ++problems) {
       const TickProblem problem = limitedProblem(source, ordinary());
+      shapes.add(problem);
       const TickSolution solution = solve(problem, randomOptions(source), solver);
       ASSERT_EQ(solution.status, Status::ok) << solution.message;
       // τ_s is what is left of the torque without the contact forces.
@@ -187,6 +252,7 @@ TEST(WeightedQp, AnswersKeepEveryConstraint) {
       EXPECT_LE((problem.torque_limits->lower - solution.torque).maxCoeff(), 1e-6 * size);
     }
     EXPECT_GE(cones, 10);
+    shapes.expectWide();
   }
 }
 
@@ -195,6 +261,7 @@ TEST(WeightedQp, AccelerationObjectiveIsTheStatedSum) {
   ProblemSource source(15);
   for (int problems = 0; problems < 100; ++problems) {
     RandomProblemOptions shape = ordinary();
+    shape.max_levels = 4;
     shape.inequality_share = 0;
     shape.max_log10_condition = 2;
     TickProblem problem = source.problem(shape);
@@ -236,6 +303,7 @@ TEST(WeightedQp, TheInertiaMetricDoesNotSeeUnits) {
   int seen_by_identity = 0;
   for (int problems = 0; problems < 100; ++problems) {
     RandomProblemOptions shape = ordinary();
+    shape.max_levels = 4;
     shape.max_log10_condition = 2;
     const TickProblem problem = source.problem(shape);
     TickProblem scaled = problem;
@@ -338,6 +406,23 @@ TEST(WeightedQp, ASolverThatLiesIsNotTrusted) {
   EXPECT_EQ(solution.status, Status::failed);
   EXPECT_EQ(solution.message, "the solver's answer is not optimal (success)");
   EXPECT_TRUE(solution.torque.allFinite());
+}
+
+TEST(WeightedQp, NumbersWhoseSquaresOverflowAreRefused) {
+  ProblemSource source(20);
+  for (const Solver solver : solvers)
+    for (int k = 0; k < 20; ++k) {
+      TickProblem problem = source.contactProblem(ordinary());
+      problem.torque_limits = source.limits(problem.dof, 1);
+      problem.levels.back().tasks[0].has_acceleration = true;
+      problem.levels.back().tasks[0].acceleration.setConstant(10);
+      problem.levels.back().weight = 1e308;
+      const TickSolution solution = solve(problem, {}, solver);
+      EXPECT_EQ(solution.status, Status::failed);
+      EXPECT_EQ(solution.message, "weights, units and masses together make numbers that are too large to work with");
+      EXPECT_TRUE((solution.torque.array() <= problem.torque_limits->upper.array()).all());
+      EXPECT_TRUE((solution.torque.array() >= problem.torque_limits->lower.array()).all());
+    }
 }
 
 TEST(WeightedQp, DegenerateProblemsStayFinite) {

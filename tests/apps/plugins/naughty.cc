@@ -55,6 +55,8 @@ class Moody final : public BackEnd {
     solution.torque /= 1 + ticks_;
     const bool wrong = ticks_ >= from_ && ticks_ < until_;
     ++ticks_;
+    if (wrong && fault_ == "throw") throw std::runtime_error("no licence for tick " + std::to_string(ticks_ - 1));
+    if (wrong && fault_ == "throw-other") throw 7;
     solution.status = wrong ? Status::failed : Status::ok;
     solution.message = wrong ? "not in the mood" : "";
     solution.late = wrong && fault_ == "late";
@@ -76,7 +78,7 @@ void registerElements(Registry& registry) {
   moody.kind = ElementKind::back_end;
   moody.description = "Fails when it likes to.";
   moody.attributes = {{.name = "fault", .type = ValueType::choice, .default_text = "fail",
-                       .choices = {"fail", "late", "nan"}},
+                       .choices = {"fail", "late", "nan", "throw", "throw-other"}},
                       {.name = "from", .type = ValueType::real, .default_text = "20"},
                       {.name = "until", .type = ValueType::real, .default_text = "1e6"}};
   registry.addBackEnd(moody, [](const ElementValues& values) { return std::make_unique<Moody>(values); });
