@@ -17,6 +17,7 @@ inline constexpr Code empty_file{"E002", "a file holds no element"};
 inline constexpr Code not_xml{"E003", "the text is not well-formed XML"};
 inline constexpr Code several_roots{"E004", "a file has more than one outermost element"};
 inline constexpr Code not_utf8{"E005", "the text is not UTF-8"};
+inline constexpr Code too_large{"E006", "a file, or all of a stack, is too large"};
 // Grammar.
 inline constexpr Code wrong_root{"E010", "the outermost element is not the expected one"};
 inline constexpr Code unknown_element{"E011", "no element has this name"};
@@ -37,6 +38,7 @@ inline constexpr Code unknown_joint{"E031", "the robot has no such moving joint 
 inline constexpr Code unknown_object{"E032", "the scene has no such object"};
 inline constexpr Code unknown_port{"E033", "no signal or port has this name"};
 inline constexpr Code wrong_port_type{"E034", "a port gives another type than the attribute takes"};
+inline constexpr Code include_outside{"E041", "an include leads out of the folders that the user allows"};
 inline constexpr Code wrong_port_unit{"E040", "a port gives another unit or number of values than the attribute takes"};
 inline constexpr Code unknown_class{"E035", "no <defaults> class has this name"};
 inline constexpr Code unknown_parameter{"E036", "no <parameter> has this name"};
@@ -88,11 +90,11 @@ inline constexpr Code former_name{"W012", "an element or attribute has another n
 
 inline constexpr std::array all_codes{
     code::unreadable_file,    code::empty_file,         code::not_xml,          code::several_roots,
-    code::not_utf8,           code::wrong_root,         code::unknown_element,  code::unknown_attribute,
+    code::not_utf8,           code::too_large,          code::wrong_root,         code::unknown_element,  code::unknown_attribute,
     code::missing_attribute,  code::bad_value,          code::misplaced_element, code::missing_element,
     code::too_many_elements,  code::stray_text,         code::wrong_format,     code::duplicate_name,
     code::level_order,        code::attributes_clash,   code::unknown_link,       code::unknown_joint,    code::unknown_object,
-    code::unknown_port,       code::wrong_port_type,    code::wrong_port_unit,    code::unknown_class,    code::unknown_parameter,
+    code::unknown_port,       code::wrong_port_type,    code::wrong_port_unit,    code::include_outside,    code::unknown_class,    code::unknown_parameter,
     code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
     code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::joint_not_for_stacks,
     code::unfit_rate,         code::lacking_ability,

@@ -199,7 +199,7 @@ void ElementChecker::checkChildren(const XmlElement& element, const ElementRow& 
   }
   // What an unknown element may have been meant as is not called missing, too.
   for (const ChildRow& rule : row.children)
-    if (counts[rule.element] < rule.min && !(some_unknown && rule.element.starts_with('@')))
+    if (counts[rule.element] < rule.min && !element.incomplete && !(some_unknown && rule.element.starts_with('@')))
       findings_.error(code::missing_element, element,
                       tag(element.name) + " needs " + (rule.min == 1 ? "a " : std::to_string(rule.min) + " ") +
                           kindOf(rule));

@@ -41,7 +41,7 @@ class StackReader {
   }
 
   Stack run(std::vector<Diagnostic>* warnings) {
-    StackDocument document = readDocument(stack_.file, options_.set, findings_);
+    StackDocument document = readDocument(stack_.file, options_.set, options_.include_folders, findings_);
     stack_.files = std::move(document.files);
     stack_.included_from = std::move(document.included_from);
     if (!document.root) findings_.throwErrors();

@@ -17,6 +17,7 @@ inline constexpr double longest_run = 1e6;
 
 struct ReadOptions {
   std::map<std::string, std::string> set;         ///< --set name=value: overrides <parameter>; unknown names are errors
+  std::vector<std::string> include_folders;                        ///< besides the stack's own, where includes may lie
   std::vector<std::string> model_path;                     ///< folders searched for robot models, after the stack's own
   /// Loads the plugin that <plugin name> asks for into the registry; throws std::runtime_error with the reason.
   std::function<void(const std::string& name)> load_plugin;

@@ -75,12 +75,18 @@ int countCharacters(std::string_view text) {
   return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return !isContinuation(c); }));
 }
 
-std::optional<std::string> readFile(const std::string& file) {
+std::optional<std::string> readFile(const std::string& file, std::size_t most) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) return std::nullopt;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(stream), {});
+  std::string content;
+  char block[65536];
+  while (content.size() < most && (stream.read(block, sizeof block), stream.gcount() > 0))
+    content.append(block, static_cast<std::size_t>(stream.gcount()));
+  if (stream.bad()) return std::nullopt;
+  if (content.size() > most) content.resize(most);
+  return content;
 }
 
 }  // namespace tactus::dsl

@@ -41,7 +41,7 @@ class SourceText {
 /// Characters (code points) in UTF-8 text.
 int countCharacters(std::string_view text);
 
-/// The file's content, or nothing when it cannot be read.
-std::optional<std::string> readFile(const std::string& file);
+/// The file's content, or nothing when it cannot be read; at most `most` bytes of it.
+std::optional<std::string> readFile(const std::string& file, std::size_t most = std::string::npos);
 
 }  // namespace tactus::dsl

@@ -12,6 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int most_includes = 200;
+constexpr std::size_t most_of_a_file = 16 << 20;                   // bytes
+constexpr std::size_t most_of_all = 64 << 20;
 
 struct Parameter {
   std::string value;
@@ -20,9 +22,13 @@ struct Parameter {
 
 class DocumentReader {
  public:
-  DocumentReader(const std::map<std::string, std::string>& set, Findings& findings) : set_(set), findings_(findings) {}
+  DocumentReader(const std::map<std::string, std::string>& set, const std::vector<std::string>& include_folders,
+                 Findings& findings)
+      : set_(set), include_folders_(include_folders), findings_(findings) {}
 
   StackDocument run(const std::string& file) {
+    allowed_.push_back(identity(fs::absolute(file).parent_path().string()));
+    for (const std::string& folder : include_folders_) allowed_.push_back(identity(folder));
     auto source = read(file, {});
     if (!source) {
       auto missing = std::make_shared<XmlSource>();
@@ -30,6 +36,7 @@ class DocumentReader {
       findings_.error(code::unreadable_file, *missing, 0, 1, "the stack '" + file + "' cannot be read");
       return std::move(document_);
     }
+    if (tellTooLarge(*source)) return std::move(document_);
     document_.root = parseXml(source, findings_);
     if (!document_.root) return std::move(document_);
     if (document_.root->name != "stack") {
@@ -54,8 +61,9 @@ class DocumentReader {
   }
 
   std::shared_ptr<XmlSource> read(const std::string& file, std::vector<description::Place> included_from) {
-    auto text = readFile(file);
+    auto text = readFile(file, most_of_a_file + 1);
     if (!text) return nullptr;
+    bytes_ += text->size();
     document_.files.emplace(file, *text);
     if (!included_from.empty()) document_.included_from.emplace(file, included_from);
     auto source = std::make_shared<XmlSource>();
@@ -64,13 +72,31 @@ class DocumentReader {
     return source;
   }
 
+  /// Symbolic links are followed first: what counts is where the file really lies.
+  bool isAllowed(const std::string& file) const {
+    const std::string real = identity(file);
+    return std::any_of(allowed_.begin(), allowed_.end(), [&](const std::string& folder) {
+      return real.starts_with(folder.ends_with('/') ? folder : folder + "/");
+    });
+  }
+
+  bool tellTooLarge(const XmlSource& source) {
+    const bool file = source.text.text().size() > most_of_a_file;
+    if (!file && bytes_ <= most_of_all) return false;
+    const std::size_t most = file ? most_of_a_file : most_of_all;
+    findings_.error(code::too_large, source, 0, 1,
+                    std::string(file ? "the file has" : "the files of the stack have") + " more than " +
+                        std::to_string(most >> 20) + " MiB");
+    return true;
+  }
+
   /// Notes parameters and replaces includes below `element`, in document order.
   void splice(XmlElement& element) {
     std::vector<std::unique_ptr<XmlElement>> children;
     children.swap(element.children);
     for (auto& child : children) {
       if (child->name == "include") {
-        include(element, *child);
+        if (!include(element, *child)) element.incomplete = true;
       } else {
         if (child->name == "parameter" && element.name == "stack") define(*child);
         child->parent = &element;
@@ -80,28 +106,34 @@ class DocumentReader {
     }
   }
 
-  void include(XmlElement& element, XmlElement& directive) {
+  /// False when it was refused, which has been told.
+  bool include(XmlElement& element, XmlElement& directive) {
     refuseOtherAttributes(directive, {"file"}, findings_);
     for (const auto& child : directive.children)
       findings_.error(code::misplaced_element, *child, "<" + child->name + "> must not stand in <include>");
-    if (!requireAttribute(directive, "file", findings_)) return;
+    if (!requireAttribute(directive, "file", findings_)) return false;
     substitute(directive);
     const XmlAttribute& given = *directive.attribute("file");
     if (++includes_ > most_includes)
-      return findings_.error(code::reference_cycle, directive,
-                             "a stack may have at most " + std::to_string(most_includes) + " includes");
+      return refuse(directive, code::reference_cycle,
+                    "a stack may have at most " + std::to_string(most_includes) + " includes");
     const std::string file = pathBeside(directive.source->text.file(), given.value);
     if (std::find(open_files_.begin(), open_files_.end(), identity(file)) != open_files_.end())
-      return findings_.errorAtValue(code::reference_cycle, directive, given,
+      return refuse(directive, code::reference_cycle,
                                     "'" + given.value + "' includes itself, directly or through others");
+    if (!isAllowed(file))
+      return refuse(directive, code::include_outside,
+                                    "'" + given.value + "' lies outside of the stack's folder; when you trust it, allow "
+                                    "its folder in TACTUS_INCLUDE_PATH");
     std::vector<description::Place> way{directive.place()};
     way.insert(way.end(), directive.source->included_from.begin(), directive.source->included_from.end());
     const auto source = read(file, std::move(way));
     if (!source)
-      return findings_.errorAtValue(code::unreadable_file, directive, given,
+      return refuse(directive, code::unreadable_file,
                                     "the file '" + given.value + "' cannot be read: looked for '" + file + "'");
+    if (tellTooLarge(*source)) return false;
     auto root = parseXml(source, findings_);
-    if (!root || !fitsInto(element, *root)) return;
+    if (!root || !fitsInto(element, *root)) return false;
     open_files_.push_back(identity(file));
     splice(*root);
     open_files_.pop_back();
@@ -109,6 +141,12 @@ class DocumentReader {
       child->parent = &element;
       element.children.push_back(std::move(child));
     }
+    return true;
+  }
+
+  bool refuse(const XmlElement& directive, const Code& code, const std::string& message) {
+    findings_.errorAtValue(code, directive, *directive.attribute("file"), message);
+    return false;
   }
 
   /// An included file has the element that it extends outermost; what stands inside takes the include's place.
@@ -211,6 +249,9 @@ class DocumentReader {
   }
 
   const std::map<std::string, std::string>& set_;
+  const std::vector<std::string>& include_folders_;
+  std::vector<std::string> allowed_;                               // their real paths, and the stack's own
+  std::size_t bytes_ = 0;                                          // of all files
   Findings& findings_;
   StackDocument document_;
   std::map<std::string, Parameter> parameters_;
@@ -254,8 +295,9 @@ std::vector<std::string> loadPlugins(const XmlElement& root, const std::function
   return loaded;
 }
 
-StackDocument readDocument(const std::string& file, const std::map<std::string, std::string>& set, Findings& findings) {
-  return DocumentReader(set, findings).run(file);
+StackDocument readDocument(const std::string& file, const std::map<std::string, std::string>& set,
+                           const std::vector<std::string>& include_folders, Findings& findings) {
+  return DocumentReader(set, include_folders, findings).run(file);
 }
 
 }  // namespace tactus::dsl

@@ -68,9 +68,10 @@ std::vector<Edit> useNewNames(XmlElement& root, const control::ElementTable& tab
 }
 
 Migration migrate(const std::string& file, const control::Registry& registry,
+                  const std::vector<std::string>& include_folders,
                   const std::function<void(const std::string& plugin)>& load_plugin) {
   Findings findings;
-  StackDocument document = readDocument(file, {}, findings);
+  StackDocument document = readDocument(file, {}, include_folders, findings);
   if (!document.root) findings.throwErrors();
   loadPlugins(*document.root, load_plugin, findings);
   Findings renamings;

@@ -31,6 +31,7 @@ struct Migration {
 
 /// Throws InvalidStack when the stack cannot be read at all, or a plugin of it cannot be loaded.
 Migration migrate(const std::string& file, const control::Registry& registry,
+                  const std::vector<std::string>& include_folders,
                   const std::function<void(const std::string& plugin)>& load_plugin);
 
 /// `text` with the edits made; they must not overlap.

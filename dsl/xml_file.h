@@ -34,6 +34,7 @@ struct XmlElement {
   std::size_t end = 0;                                             ///< just past its last '>'
   std::size_t text_at = nowhere;                                   ///< text directly inside, if any
   const XmlElement* parent = nullptr;
+  bool incomplete = false;                                         ///< an include inside it could not be read
   std::vector<XmlAttribute> attributes;
   std::vector<std::unique_ptr<XmlElement>> children;
 

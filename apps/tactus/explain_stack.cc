@@ -112,7 +112,7 @@ int explainStack(const StackOptions& options, const std::vector<std::string>& pl
                         {"column", element.place.column},
                         {"values", attributes}});
   }
-  std::cout << (json ? ordered_json{{"stack", stack.name}, {"elements", elements}}.dump(2) + "\n" : out);
+  std::cout << (json ? jsonText({{"stack", stack.name}, {"elements", elements}}, 2) + "\n" : out);
   return exit_done;
 }
 

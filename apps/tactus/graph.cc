@@ -3,6 +3,7 @@
 
 #include "apps/tactus/command.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/text.h"
 #include "dsl/compile.h"
 #include "dsl/stack_graph.h"
 #include "framework/runtime/file_error.h"
@@ -25,7 +26,7 @@ int graph(const GraphArguments& arguments, bool json) {
   const dsl::StackGraph drawn = dsl::graphOf(stack);
   const std::string text = form == "svg"   ? dsl::graphToSvg(drawn)
                            : form == "dot" ? dsl::graphToDot(drawn)
-                                           : dsl::graphToJson(drawn).dump(2) + "\n";
+                                           : jsonText(dsl::graphToJson(drawn), 2) + "\n";
   if (arguments.out.empty()) {
     std::cout << text;
   } else {

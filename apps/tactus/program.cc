@@ -1,5 +1,7 @@
 #include "apps/tactus/program.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -86,6 +88,10 @@ std::vector<std::string> Program::modelPath() const {
   return folders;
 }
 
+std::vector<std::string> Program::includeFolders() const {
+  return runtime::foldersFromEnvironment("TACTUS_INCLUDE_PATH");
+}
+
 const control::ElementRow& Program::backEndRow(const std::string& name) const {
   const control::ElementRow* row = registry_.elements().findBackEnd(name);
   if (!row) {
@@ -111,10 +117,13 @@ BackEndChoice Program::backEndChoice(const std::string& label) const {
 }
 
 dsl::Stack Program::read(const StackOptions& options, std::vector<dsl::Diagnostic>* warnings) {
-  runtime::readFile(options.file);  // A file that is not there is no invalid stack.
+  // A file that is not there is no invalid stack.  A pipe is read once.
+  if (std::filesystem::is_directory(options.file) || ::access(options.file.c_str(), R_OK) != 0)
+    runtime::readFile(options.file);
   dsl::ReadOptions read;
   read.set = parseSettings(options.set);
   read.model_path = modelPath();
+  read.include_folders = includeFolders();
   read.plant_step = sim::PlantOptions().step;
   read.load_plugin = [this](const std::string& name) { plugins_.loadNamed(name); };
   if (!options.back_end.empty()) {

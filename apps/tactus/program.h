@@ -43,6 +43,8 @@ class Program {
   std::vector<std::string> loadFolders();
   /// Folders where robots are looked up by name, after the stack's own.
   std::vector<std::string> modelPath() const;
+  /// Folders besides a stack's own where its includes may lie: TACTUS_INCLUDE_PATH.
+  std::vector<std::string> includeFolders() const;
 
   /// Throws UsageError for a back end or an option that does not exist.
   BackEndChoice backEndChoice(const std::string& label) const;

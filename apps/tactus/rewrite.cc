@@ -58,9 +58,9 @@ struct MigrateArguments {
 
 int migrate(const MigrateArguments& arguments) {
   Program program(arguments.plugins);
-  const dsl::Migration migration = dsl::migrate(arguments.stack, program.registry(), [&](const std::string& name) {
-    program.plugins().loadNamed(name);
-  });
+  const dsl::Migration migration = dsl::migrate(
+      arguments.stack, program.registry(), program.includeFolders(),
+      [&](const std::string& name) { program.plugins().loadNamed(name); });
   for (const dsl::Diagnostic& change : migration.changes) std::cerr << dsl::render(change) << "\n";
   if (migration.changes.empty()) std::cerr << arguments.stack << ": nothing to rewrite\n";
   for (const auto& [file, text] : migration.files) {

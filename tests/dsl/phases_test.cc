@@ -61,8 +61,8 @@ TEST(PhasesInAStack, MistakesAreToldAtTheirPlaces) {
     text.replace(text.find(from), from.size(), to);
     return errors(stackWith(text, "do.approach"));
   };
-  EXPECT_THAT(with("to=\"sweep\"", "to=\"sweeb\""), ElementsAre("5:35 E061 there is no phase 'sweeb' [sweep]"));
-  EXPECT_THAT(with("p.value", "q.value"), ElementsAre("5:48 E033 the stack has no signal 'q' [p.value]"));
+  EXPECT_THAT(with("to=\"sweep\"", "to=\"sweeb\""), ElementsAre("5:34 E061 there is no phase 'sweeb' [sweep]"));
+  EXPECT_THAT(with("p.value", "q.value"), ElementsAre("5:47 E033 the stack has no signal 'q' [p.value]"));
   EXPECT_THAT(with(" when=\"p.value\"", ""), ElementsAre(HasSubstr("E013 <next> needs at least one of 'when', 'after'"),
                                                         HasSubstr("E022 'above' needs 'when', too")));
   EXPECT_THAT(with("<phase name=\"sweep\"/>", "<phase name=\"sweep\" far=\"1\"/>"),

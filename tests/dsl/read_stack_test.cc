@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/dsl/test_elements.h"
 
 namespace tactus::dsl_test {
@@ -367,6 +369,42 @@ TEST(ReadStack, AtMostFiftyErrorsAreTold) {
   std::string many = "<level priority=\"1\">";
   for (int i = 0; i < 200; ++i) many += "<test.pull name=\"p\"/>\n";
   EXPECT_EQ(errors(smallStack(many + "</level>")).size(), 50u);
+}
+
+TEST(ReadStack, IncludesStayInTheFoldersThatTheUserAllows) {
+  const std::string inside = writeFile("part.xml", "<level><test.pull name=\"p\"/></level>");
+  const std::string folder = inside.substr(0, inside.rfind('/'));
+  const std::string outside = folder + "_outside";
+  std::filesystem::create_directories(outside);
+  std::filesystem::copy_file(inside, outside + "/part.xml", std::filesystem::copy_options::overwrite_existing);
+  const auto with = [](const std::string& file) {
+    return smallStack("<level priority=\"1\"><include file=\"" + file + "\"/></level>");
+  };
+  const std::string name = outside.substr(outside.rfind('/') + 1);
+  EXPECT_THAT(errors(with("part.xml")), ElementsAre());
+  EXPECT_THAT(errors(with("../" + folder.substr(folder.rfind('/') + 1) + "/part.xml")), ElementsAre()) << "out and in again";
+  for (const std::string& file : {"../" + name + "/part.xml", outside + "/part.xml"}) {
+    EXPECT_THAT(errors(with(file)),
+                ElementsAre("3:36 E041 '" + file + "' lies outside of the stack's folder; when you trust it, allow its "
+                            "folder in TACTUS_INCLUDE_PATH"));
+    dsl::ReadOptions options = readOptions();
+    options.include_folders = {outside};
+    EXPECT_THAT(errors(with(file), options), ElementsAre());
+  }
+  std::filesystem::remove(folder + "/link.xml");
+  std::filesystem::create_symlink(outside + "/part.xml", folder + "/link.xml");
+  EXPECT_THAT(errors(with("link.xml")), ElementsAre(testing::HasSubstr("E041 'link.xml' lies outside")));
+}
+
+TEST(ReadStack, FilesHaveASizeThatNobodyWrites) {
+  const std::string blanks(17 << 20, ' ');
+  EXPECT_THAT(errors(smallStack(level) + blanks), ElementsAre("1:1 E006 the file has more than 16 MiB"));
+  // Each of them would do.
+  writeFile("part.xml", "<stack><!--" + std::string(15 << 20, 'x') + "--></stack>");
+  std::string includes;
+  for (int i = 0; i < 5; ++i) includes += "<include file=\"part.xml\"/>";
+  EXPECT_THAT(errors(smallStack(includes + level)),
+              ElementsAre("1:1 E006 the files of the stack have more than 64 MiB"));
 }
 
 }  // namespace

@@ -59,14 +59,14 @@ TEST(Upgrade, MigrateRewritesNamesAndNothingElse) {
   const std::string inner = writeFile("inner.xml", "<level><test.shove name=\"c\"/> <!-- as it was --></level>");
   const std::string text = smallStack("<level priority=\"1\"><include file=\"inner.xml\"/><test.nudge k=\"1\"  name='b'/></level>");
   const std::string file = writeFile("stack.xml", text);
-  const dsl::Migration migration = dsl::migrate(file, registry, {});
+  const dsl::Migration migration = dsl::migrate(file, registry, {}, {});
   ASSERT_EQ(migration.files.size(), 2u);
   EXPECT_EQ(migration.files.at(inner), "<level><test.nudge name=\"c\"/> <!-- as it was --></level>");
   std::string wanted = text;
   wanted.replace(wanted.find(" k=\"1\""), 2, " stiffness");
   EXPECT_EQ(migration.files.at(file), wanted);
   EXPECT_EQ(migration.changes.size(), 2u);
-  EXPECT_TRUE(dsl::migrate(writeFile("new.xml", wanted), registry, {}).changes.size() == 1u) << "the include's alone";
+  EXPECT_TRUE(dsl::migrate(writeFile("new.xml", wanted), registry, {}, {}).changes.size() == 1u) << "the include's alone";
 }
 
 TEST(Upgrade, BothNamesAtOnceAreRefused) {
