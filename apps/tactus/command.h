@@ -46,5 +46,6 @@ void addGolden(CLI::App& program, Context& context);
 void addPlugins(CLI::App& program, Context& context);
 void addExplain(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
+void addNew(CLI::App& program, Context& context);
 
 }  // namespace tactus::app

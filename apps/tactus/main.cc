@@ -84,6 +84,7 @@ int runCommand(int argc, char** argv) {
   addPlugins(app, context);
   addReport(app, context);
   addExplain(app, context);
+  addNew(app, context);
   // A misspelled command would otherwise be reported as a missing one.  Commands inherit this when they are added, so
   // it comes after them: what they do not know stays an error.
   app.require_subcommand(0, 1);

@@ -68,7 +68,7 @@ TEST(PluginsCommand, ElementsWithoutTheirPluginsNameAreRefused) {
 TEST(PluginsCommand, WrongPluginIsExitFour) {
   const Outcome outcome = tactus({"plugins", "list", "--plugin", library("abi")});
   EXPECT_EQ(outcome.exit_code, 4);
-  EXPECT_THAT(outcome.err, HasSubstr("built with plugin ABI 99, but this program has 1"));
+  EXPECT_THAT(outcome.err, HasSubstr("built with plugin ABI 99, but this program has 2"));
 }
 
 TEST(PluginsCommand, MissingPluginIsExitFour) {

@@ -83,7 +83,7 @@ TEST_F(PluginLoaderTest, WrongMagic) {
 
 TEST_F(PluginLoaderTest, WrongAbi) {
   EXPECT_THAT(refusalOf(library("abi")),
-              HasSubstr("built with plugin ABI 99, but this program has 1; rebuild it against this Tactus"));
+              HasSubstr("built with plugin ABI 99, but this program has 2; rebuild it against this Tactus"));
 }
 
 TEST_F(PluginLoaderTest, WrongSize) {
