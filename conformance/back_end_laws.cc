@@ -29,7 +29,8 @@ void checkTorque(const Subject& subject) {
     const control::TickSolution& solution = controller.solution();
     const control::TickProblem& problem = controller.problem();
     if (solution.torque.size() != problem.dof) throw Broken{"its torque has another size than the problem"};
-    if (!solution.torque.allFinite()) throw Broken{"its torque is not finite"};
+    // The controller takes a torque that is not finite away, and falls back.
+    if (solution.status == control::Status::ok && controller.record().fallback) throw Broken{"its torque is not finite"};
     if (solution.status != control::Status::ok) {
       if (solution.message.empty()) throw Broken{"it did not solve a tick and says nothing about it"};
       return;
@@ -63,6 +64,7 @@ void checkDeterminism(const Subject& subject) {
 
 void checkBackEnd(const Subject& subject, Report& report) {
   judge(subject, "torque", report, [&] { checkTorque(subject); });
+  if (report.findings.back().outcome == Outcome::broken) return;
   judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
 }
 

@@ -75,7 +75,7 @@ void States::jump(const Bench& bench) {
     qd_[i] = uniform(-0.5, 0.5);
   }
   touches_.clear();
-  const double share = uniform(0, 1);                              // of the links that touch
+  const double share = std::pow(uniform(0, 1), 2);                 // of the links that touch, often few
   for (const int link : skin_) {
     Touch touch{link, {}, {}, 0};
     for (double& x : touch.point_L) x = uniform(-0.02, 0.02);
