@@ -5,7 +5,8 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Tactus)
 
 install(TARGETS tactus_framework tactus_conformance tactus_flags EXPORT TactusTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-set_target_properties(tactus_conformance PROPERTIES INSTALL_RPATH "$ORIGIN")
+set_target_properties(tactus_framework tactus_conformance PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
 install(DIRECTORY framework DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus FILES_MATCHING PATTERN "*.h")
 install(FILES conformance/bench.h conformance/conformance.h conformance/report.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/conformance)
