@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <sstream>
 
 #include "framework/control/element_table.h"
 #include "tests/apps/program.h"
@@ -37,6 +38,25 @@ TEST(NewPlugin, NoPlaceholderIsLeft) {
   EXPECT_EQ(files, 7);
   EXPECT_THAT(contentOf(folder.file("acme/stack.xml")), HasSubstr("<acme.reach name=\"reach\""));
   EXPECT_THAT(made.err, HasSubstr("README.md has the commands"));
+}
+
+/// The commands of docs/plugins.md are those of the README, which tests/package runs.
+TEST(NewPlugin, ThePageAboutPluginsShowsTheCommandsOfItsReadme) {
+  const TemporaryFolder folder;
+  tactus({"new", "plugin", "acme", "--out", folder.path()});
+  const std::string readme = contentOf(folder.file("acme/README.md"));
+  const std::string page = contentOf(TACTUS_SOURCE_DIR "/docs/plugins.md");
+  const size_t begin = page.find("```sh\n") + 6;
+  std::istringstream commands(page.substr(begin, page.find("```", begin) - begin));
+  std::string line;
+  std::getline(commands, line);
+  EXPECT_EQ(line, "tactus new plugin acme && cd acme");
+  int lines = 0;
+  for (; std::getline(commands, line); ++lines) {
+    const std::string command = line.substr(0, line.find(" #"));
+    EXPECT_THAT(readme, HasSubstr("\n" + command.substr(0, command.find_last_not_of(' ') + 1))) << line;
+  }
+  EXPECT_EQ(lines, 5);
 }
 
 /// Every name that is taken can begin an element's name, and every other one is refused.

@@ -107,9 +107,16 @@ TEST_F(Installed, ProgramFindsItsOwnPluginsAndModels) {
   EXPECT_THAT(said.text, ::testing::Not(HasSubstr(TACTUS_BINARY_DIR)));
 }
 
-/// By the commands of the README that `new plugin` writes, as they stand there.
+/// By the commands of the README that `new plugin` writes, as they stand there.  Its test gets the one of docs/plugins.md.
 TEST_F(Installed, ANewPluginIsBuiltTestedCheckedAndRun) {
   const std::string readme = tactus::testing::contentOf(newPlugin() + "/README.md");
+  const std::string page = tactus::testing::contentOf(TACTUS_SOURCE_DIR "/docs/plugins.md");
+  const std::string last_include = "#include \"conformance/conformance.h\"\n";
+  const size_t from = page.find(last_include) + last_include.size();
+  const std::string shown = page.substr(from, page.find("```", from) - from);
+  EXPECT_THAT(shown, HasSubstr("bench.tick();"));
+  own.write("acme/reach_test.cc",
+            tactus::testing::contentOf(own.file("acme/reach_test.cc")) + "\nTEST(Page, IsTrue) {\n" + shown + "}\n");
   const size_t begin = readme.find("```sh\n") + 6;
   const std::string commands = readme.substr(begin, readme.find("\n```", begin) - begin);
   EXPECT_THAT(commands, HasSubstr("-DTactus_DIR=" + package.string()));
