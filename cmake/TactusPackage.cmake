@@ -1,5 +1,5 @@
-# find_package(Tactus), from the build tree as from an installed one: tactus_add_plugin, and the targets Tactus::framework
-# and, for tests, Tactus::conformance.
+# find_package(Tactus), from the build tree as from an installed one: tactus_add_plugin, and the targets
+# Tactus::framework and, for tests, Tactus::conformance.
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Tactus)
 

@@ -30,7 +30,8 @@ void checkTorque(const Subject& subject) {
     const control::TickProblem& problem = controller.problem();
     if (solution.torque.size() != problem.dof) throw Broken{"its torque has another size than the problem"};
     // The controller takes a torque that is not finite away, and falls back.
-    if (solution.status == control::Status::ok && controller.record().fallback) throw Broken{"its torque is not finite"};
+    if (solution.status == control::Status::ok && controller.record().fallback)
+      throw Broken{"its torque is not finite"};
     if (solution.status != control::Status::ok) {
       if (solution.message.empty()) throw Broken{"it did not solve a tick and says nothing about it"};
       return;

@@ -70,7 +70,9 @@ const control::TickTask& Bench::rows(std::string_view task) const {
   return const_cast<Bench*>(this)->taskNamed(task).rows;
 }
 
-const control::Task& Bench::task(std::string_view name) const { return *const_cast<Bench*>(this)->taskNamed(name).task; }
+const control::Task& Bench::task(std::string_view name) const {
+  return *const_cast<Bench*>(this)->taskNamed(name).task;
+}
 
 const control::Signal& Bench::signal(std::string_view name) const {
   for (const control::NamedSignal& named : signals())

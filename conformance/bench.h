@@ -19,7 +19,8 @@ class Workshop {
   /// `plugins` are libraries.  Throws runtime::PluginError.
   explicit Workshop(const std::vector<std::string>& plugins = {});
 
-  /// Robot models are found beside the stack, in TACTUS_MODEL_PATH, and among the shipped ones.  Throws dsl::InvalidStack.
+  /// Robot models are found beside the stack, in TACTUS_MODEL_PATH, and among the shipped ones.  Throws
+  /// dsl::InvalidStack.
   dsl::Stack read(const std::string& file);
   const control::Registry& registry() const { return registry_; }
   const runtime::PluginLoader& plugins() const { return plugins_; }

@@ -22,12 +22,12 @@
 ///   attributes   the factories of the stack's instances ask for every attribute, each for some.
 ///
 /// of each task
-///   rows         0 ≤ rows ≤ capacity, storage keeps its size, J, F, acceleration and error are finite, and there are rows in
-///                some state.
-///   jacobian     J is the derivative of Task::displacement, to 1e-6 for a unit motion of each joint.  Of a task that does not
-///                tell its displacement: a motion that J does not see (J δ = 0) changes neither F nor the error.
-///   bias         of a task that asks for accelerations: the part of them that is even in q̇, less that at rest, is −J̇q̇, with J̇
-///                from differences of J along q̇.  So a wish is affine in the velocity.
+///   rows         0 ≤ rows ≤ capacity, storage keeps its size, J, F, acceleration and error are finite, and there are
+///                rows in some state.
+///   jacobian     J is the derivative of Task::displacement, to 1e-6 for a unit motion of each joint.  Of a task that
+///                does not tell its displacement: a motion that J does not see (J δ = 0) changes neither F nor error.
+///   bias         of a task that asks for accelerations: the part of them that is even in q̇, less that at rest, is
+///                −J̇q̇, with J̇ from differences of J along q̇.  So a wish is affine in the velocity.
 ///   frame        base, contacts, signals and values in world axes (AttributeRow::in_world) turned together about the
 ///                vertical and moved: the same joint torques JᵀF, and JᵀJ: the same rows up to their axes.
 ///   allocation   an update takes no memory.

@@ -29,7 +29,8 @@ std::string Report::text() const {
   for (std::size_t i = 0; i < findings.size(); ++i) {
     const Finding& finding = findings[i];
     const bool first = i == 0 || !isOfOneSubject(findings[i - 1], finding);
-    if (first) text += "<" + finding.element + ">" + (finding.instance.empty() ? "" : " '" + finding.instance + "'") + "\n";
+    const std::string instance = finding.instance.empty() ? "" : " '" + finding.instance + "'";
+    if (first) text += "<" + finding.element + ">" + instance + "\n";
     if (finding.outcome == Outcome::kept) kept += (kept.empty() ? "" : ", ") + finding.law;
     else text += std::string("  ") + nameOf(finding.outcome) + ": " + finding.law + ": " + finding.message + "\n";
     const bool last = i + 1 == findings.size() || !isOfOneSubject(finding, findings[i + 1]);

@@ -8,7 +8,7 @@ namespace tactus::conformance {
 enum class Outcome {
   kept,
   broken,
-  not_asked                                                        ///< the law does not concern the element; the message says why
+  not_asked                                                        ///< does not concern it; the message says why
 };
 
 /// What one law says of one element, or of one instance of it.
@@ -17,7 +17,7 @@ struct Finding {
   std::string instance;                                            ///< its name in the stack; "" for the element's row
   std::string law;                                                 ///< "jacobian"; see conformance.h
   Outcome outcome = Outcome::kept;
-  std::string message;                                             ///< what was found, as a sentence; "" where nothing is to be said
+  std::string message;                                             ///< what was found, as a sentence; "" where kept
 };
 
 struct Report {

@@ -64,7 +64,8 @@ void checkAllocation(const Subject& subject) {
   for (int k = 0; k < kTicks; ++k) {
     bench.tick();
     if (bench.allocations() != 0)
-      throw Broken{"update " + std::to_string(k + 1) + " took memory " + std::to_string(bench.allocations()) + " times"};
+      throw Broken{"update " + std::to_string(k + 1) + " took memory " + std::to_string(bench.allocations()) +
+                   " times"};
   }
 }
 

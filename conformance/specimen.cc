@@ -123,7 +123,8 @@ class Maker {
         return name + "." + port.name;
       }
     }
-    throw NoGuess{"no signal has a port of the type " + attribute.port_type + " that '" + attribute.name + "' requires"};
+    throw NoGuess{"no signal has a port of the type " + attribute.port_type + " that '" + attribute.name +
+                  "' requires"};
   }
 
   /// For a default such as "touch.all": a signal of that name with such a port.

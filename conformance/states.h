@@ -13,9 +13,9 @@ inline constexpr int kStretch = 20;
 /// hangs at no joint of the base, the root link itself, stays.
 dsl::Stack movedStack(const dsl::Stack& stack, const Eigen::Isometry3d& X);
 
-/// Random states of a robot near the stack's start, with contacts.  The same seed draws the same states, `moved` with the
-/// world.  Every `kStretch` ticks joints jump elsewhere and other links touch; in between all joints move steadily and
-/// the contacts with their links.
+/// Random states of a robot near the stack's start, with contacts.  The same seed draws the same states, `moved` with
+/// the world.  Every `kStretch` ticks joints jump elsewhere and other links touch; in between all joints move steadily
+/// and the contacts with their links.
 class States {
  public:
   States(const dsl::Stack& stack, unsigned seed, const Eigen::Isometry3d& moved = Eigen::Isometry3d::Identity());

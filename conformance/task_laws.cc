@@ -80,7 +80,8 @@ void checkRows(const Subject& subject) {
     bench.tick();
     const TickTask& rows = bench.rows();
     if (rows.rows < 0 || rows.rows > capacity)
-      throw Broken{"it fills " + std::to_string(rows.rows) + " rows, but announced at most " + std::to_string(capacity)};
+      throw Broken{"it fills " + std::to_string(rows.rows) + " rows, but announced at most " +
+                   std::to_string(capacity)};
     if (rows.jacobian.rows() != capacity || rows.jacobian.cols() != dof || rows.force.size() != capacity ||
         rows.acceleration.size() != capacity)
       throw Broken{"it changed the size of its storage"};
@@ -90,7 +91,8 @@ void checkRows(const Subject& subject) {
     if (!std::isfinite(bench.task().error())) throw Broken{"its error is not finite"};
     met += rows.rows;
   }
-  if (met == 0) throw Broken{"it had no rows in any of " + std::to_string(kTicks) + " states: give a stack in which it has some"};
+  if (met == 0)
+    throw Broken{"it had no rows in any of " + std::to_string(kTicks) + " states: give a stack in which it has some"};
 }
 
 /// J against the differences of what the task says that it measures.
@@ -220,7 +222,8 @@ void checkAllocation(const Subject& subject) {
   for (int k = 0; k < kTicks; ++k) {
     bench.tick();
     if (bench.allocations() != 0)
-      throw Broken{"update " + std::to_string(k + 1) + " took memory " + std::to_string(bench.allocations()) + " times"};
+      throw Broken{"update " + std::to_string(k + 1) + " took memory " + std::to_string(bench.allocations()) +
+                   " times"};
   }
 }
 

@@ -30,6 +30,7 @@ inline constexpr Code stray_text{"E018", "text stands between elements"};
 inline constexpr Code wrong_format{"E019", "the format number is not one that this version reads"};
 inline constexpr Code duplicate_name{"E020", "a name is given twice"};
 inline constexpr Code level_order{"E021", "the priorities of the levels do not rise"};
+inline constexpr Code attributes_clash{"E022", "attributes of an element exclude each other, or one needs another"};
 // References.
 inline constexpr Code unknown_link{"E030", "the robot has no such link or group of links"};
 inline constexpr Code unknown_joint{"E031", "the robot has no such moving joint or group of joints"};
@@ -73,6 +74,8 @@ inline constexpr Code forgotten_centre{"W007", "the centre of mass of a link was
 inline constexpr Code unread_part{"W008", "nothing reads a part of a robot's description"};
 inline constexpr Code lost_digits{"W009", "a robot far from the world's origin costs digits"};
 inline constexpr Code unused_signal{"W010", "nothing reads a signal"};
+inline constexpr Code deprecated_part{"W011", "an element or attribute is deprecated"};
+inline constexpr Code former_name{"W012", "an element or attribute has another name now"};
 }  // namespace code
 
 inline constexpr std::array all_codes{
@@ -80,7 +83,7 @@ inline constexpr std::array all_codes{
     code::not_utf8,           code::wrong_root,         code::unknown_element,  code::unknown_attribute,
     code::missing_attribute,  code::bad_value,          code::misplaced_element, code::missing_element,
     code::too_many_elements,  code::stray_text,         code::wrong_format,     code::duplicate_name,
-    code::level_order,        code::unknown_link,       code::unknown_joint,    code::unknown_object,
+    code::level_order,        code::attributes_clash,   code::unknown_link,       code::unknown_joint,    code::unknown_object,
     code::unknown_port,       code::wrong_port_type,    code::unknown_class,    code::unknown_parameter,
     code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
     code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::joint_not_for_stacks,
@@ -90,6 +93,6 @@ inline constexpr std::array all_codes{
     code::refused_by_urdf,    code::bad_mimic,          code::impossible_robot, code::no_inertia,
     code::bad_mass,           code::bad_inertia,        code::shape_not_felt,   code::urdf_remark,
     code::meaningless_part,   code::forgotten_centre,   code::unread_part,      code::lost_digits,
-    code::unused_signal};
+    code::unused_signal,      code::deprecated_part,    code::former_name};
 
 }  // namespace tactus::dsl

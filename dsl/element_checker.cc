@@ -10,7 +10,6 @@ namespace {
 
 using control::AttributeRow;
 using control::ChildRow;
-using control::ElementKind;
 using control::ElementRow;
 using control::ElementValues;
 using control::Origin;
@@ -131,18 +130,11 @@ void ElementChecker::checkBases() {
   }
 }
 
-bool ElementChecker::allows(const ChildRow& child, const ElementRow& row) const {
-  if (child.element == "@task") return row.kind == ElementKind::task;
-  if (child.element == "@signal") return row.kind == ElementKind::signal;
-  if (child.element == "@shape") return row.kind == ElementKind::shape;
-  return child.element == row.name;
-}
-
 std::vector<std::string> ElementChecker::allowedChildren(const ElementRow& row) const {
   std::vector<std::string> names;
   for (const ChildRow& child : row.children)
     for (const ElementRow& candidate : table_.rows())
-      if (candidate.kind != ElementKind::back_end && allows(child, candidate)) names.push_back(candidate.name);
+      if (child.allows(candidate)) names.push_back(candidate.name);
   return names;
 }
 
@@ -157,10 +149,13 @@ CheckedElement ElementChecker::checkElement(const XmlElement& element, const Ele
   checked.row = &row;
   checked.values = ElementValues(row);
   checkText(element);
+  if (!row.deprecated.empty())
+    findings_.warning(code::deprecated_part, element, tag(row.name) + " is deprecated: " + row.deprecated);
   checked.complete = checkGivenAttributes(element, row, checked.values);
   const bool prototype = element.parent && element.parent->name == "defaults";
   if (!prototype) {
     fillFromClass(element, checked.values);
+    if (!checkPresence(element, row, checked.values)) checked.complete = false;
     if (!fillDefaults(element, row, checked.values)) checked.complete = false;
   }
   if (prototype) {
@@ -183,7 +178,7 @@ void ElementChecker::checkChildren(const XmlElement& element, const ElementRow& 
   bool some_unknown = false;
   const auto ruleFor = [&](const ElementRow* child) {
     return std::find_if(row.children.begin(), row.children.end(),
-                        [&](const ChildRow& candidate) { return child && allows(candidate, *child); });
+                        [&](const ChildRow& candidate) { return child && candidate.allows(*child); });
   };
   for (const auto& child : element.children) {
     const ElementRow* child_row = table_.find(child->name);
@@ -222,7 +217,7 @@ void ElementChecker::sayMisplaced(const XmlElement& child, const XmlElement& par
   std::vector<std::string> homes;
   for (const ElementRow& candidate : table_.rows())
     for (const ChildRow& rule : candidate.children)
-      if (candidate.name != "defaults" && allows(rule, *row)) homes.push_back(tag(candidate.name));
+      if (candidate.name != "defaults" && rule.allows(*row)) homes.push_back(tag(candidate.name));
   findings_.error(code::misplaced_element, child,
                   tag(child.name) + " must not stand in " + tag(parent.name) +
                       (homes.empty() ? "" : ": it belongs in " + listed(homes)));
@@ -234,6 +229,7 @@ bool ElementChecker::checkGivenAttributes(const XmlElement& element, const Eleme
   for (const XmlAttribute& attribute : element.attributes) {
     const AttributeRow* known = row.attribute(attribute.name);
     if (!known && back_end) known = back_end->attribute(attribute.name);
+    if (!known && !element.parent && isSchemaHint(attribute)) continue;
     if (!known) {
       right = false;
       if (row.takes_back_end_options && !back_end) continue;  // which options there are depends on the back end
@@ -245,6 +241,9 @@ bool ElementChecker::checkGivenAttributes(const XmlElement& element, const Eleme
       findings_.errorAtName(code::unknown_attribute, element, attribute, message, nearest);
       continue;
     }
+    if (!known->deprecated.empty())
+      findings_.warningAtName(code::deprecated_part, element, attribute,
+                              "attribute '" + attribute.name + "' is deprecated: " + known->deprecated);
     if (attribute.value.find("${") != std::string::npos) {
       right = false;
       continue;
@@ -283,6 +282,48 @@ void ElementChecker::fillFromClass(const XmlElement& element, ElementValues& val
     for (const auto& [attribute, value] : found->second)
       if (!values.has(attribute) && !element.attribute(attribute)) values.set(attribute, value);
   }
+}
+
+/// The values at hand are those of the element and its classes; a wrong one counts as given, too.
+bool ElementChecker::checkPresence(const XmlElement& element, const ElementRow& row, const ElementValues& values) {
+  bool right = true;
+  const auto isGiven = [&](const std::string& name) { return values.has(name) || element.attribute(name); };
+  for (const control::PresenceRule& rule : row.presence) {
+    std::vector<std::string> given, missing;
+    for (const std::string& name : rule.attributes) (isGiven(name) ? given : missing).push_back("'" + name + "'");
+    const auto say = [&](const Code& code, const std::string& message) {
+      right = false;
+      const std::string at = given.empty() ? "" : given.back().substr(1, given.back().size() - 2);
+      const XmlAttribute* written = at.empty() ? nullptr : element.attribute(at);
+      if (written)
+        findings_.errorAtName(code, element, *written, message);
+      else
+        findings_.error(code, element, message);
+    };
+    std::string all;
+    for (const std::string& name : rule.attributes) all += (all.empty() ? "'" : ", '") + name + "'";
+    switch (rule.kind) {
+      case control::Presence::exclusive:
+        if (given.size() > 1) say(code::attributes_clash, tag(row.name) + " takes at most one of " + all);
+        break;
+      case control::Presence::together:
+        if (!given.empty() && !missing.empty())
+          say(code::attributes_clash, tag(row.name) + " takes " + all + " together: " + allListed(missing) + " is missing");
+        break;
+      case control::Presence::any_of:
+        if (given.empty()) say(code::missing_attribute, tag(row.name) + " needs at least one of " + all);
+        break;
+      case control::Presence::one_of:
+        if (given.empty()) say(code::missing_attribute, tag(row.name) + " needs one of " + all);
+        if (given.size() > 1) say(code::attributes_clash, tag(row.name) + " takes only one of " + all);
+        break;
+      case control::Presence::needs:
+        if (isGiven(rule.attributes.front()) && !missing.empty())
+          say(code::attributes_clash, "'" + rule.attributes.front() + "' needs " + allListed(missing) + ", too");
+        break;
+    }
+  }
+  return right;
 }
 
 bool ElementChecker::fillDefaults(const XmlElement& element, const ElementRow& row, ElementValues& values) {

@@ -45,10 +45,10 @@ class ElementChecker {
   void checkChildren(const XmlElement& element, const control::ElementRow& row, CheckedElement& into);
   bool checkGivenAttributes(const XmlElement& element, const control::ElementRow& row, control::ElementValues& values);
   void fillFromClass(const XmlElement& element, control::ElementValues& values);
+  bool checkPresence(const XmlElement& element, const control::ElementRow& row, const control::ElementValues& values);
   bool fillDefaults(const XmlElement& element, const control::ElementRow& row, control::ElementValues& values);
   void sayMisplaced(const XmlElement& child, const XmlElement& parent, const std::vector<std::string>& allowed);
   void checkText(const XmlElement& element);
-  bool allows(const control::ChildRow& child, const control::ElementRow& row) const;
   std::vector<std::string> allowedChildren(const control::ElementRow& row) const;
   const control::ElementRow* backEndOf(const XmlElement& element) const;
 

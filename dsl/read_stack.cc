@@ -13,6 +13,7 @@
 #include "dsl/reference_checker.h"
 #include "dsl/scene_reader.h"
 #include "dsl/stack_document.h"
+#include "dsl/upgrade.h"
 
 namespace tactus::dsl {
 namespace {
@@ -45,7 +46,8 @@ class StackReader {
     stack_.included_from = std::move(document.included_from);
     if (!document.root) findings_.throwErrors();
     checkFormat(*document.root);
-    loadPlugins(*document.root);
+    stack_.plugins = loadPlugins(*document.root, options_.load_plugin, findings_);
+    useNewNames(*document.root, registry_.elements(), findings_);
 
     ElementChecker checker(registry_.elements(), findings_);
     const CheckedElement root = checker.check(*document.root);
@@ -72,34 +74,6 @@ class StackReader {
     findings_.errorAtValue(code::wrong_format, root, *format,
                            "format '" + format->value + "' is not one that this version reads: expected '1'");
     findings_.throwErrors();
-  }
-
-  /// Before anything else is checked: plugins bring the elements that the rest is made of.
-  void loadPlugins(const XmlElement& root) {
-    bool failed = false;
-    for (const auto& child : root.children) {
-      const XmlAttribute* name = child->name == "plugin" ? child->attribute("name") : nullptr;
-      if (!name) continue;
-      if (std::find(stack_.plugins.begin(), stack_.plugins.end(), name->value) != stack_.plugins.end()) continue;
-      std::string reason = "this program loads no plugins";
-      try {
-        if (options_.load_plugin) {
-          options_.load_plugin(name->value);
-          stack_.plugins.push_back(name->value);
-          continue;
-        }
-      } catch (const std::exception& error) {
-        reason = error.what();
-      }
-      failed = true;
-      Findings alone;
-      alone.errorAtValue(code::plugin_failed, *child, *name,
-                         "the plugin '" + name->value + "' cannot be loaded: " + reason);
-      Diagnostic diagnostic = alone.errors().front();
-      diagnostic.exit_code = 4;
-      findings_.add(std::move(diagnostic));
-    }
-    if (failed) findings_.throwErrors();
   }
 
   void readRobotOf(const CheckedElement& element) {
@@ -406,8 +380,6 @@ class StackReader {
       return element.values.has(name) ? std::optional(element.values.real(name)) : std::nullopt;
     };
     const TargetDescription target{element.values.text("metric"), bound("lower"), bound("upper")};
-    if (!target.lower && !target.upper)
-      findings_.error(code::missing_attribute, *element.xml, "<target> needs 'lower' or 'upper', or both");
     if (target.lower && target.upper && *target.lower > *target.upper)
       findings_.errorAtValue(code::bad_value, *element.xml, *element.xml->attribute("upper"),
                              "attribute 'upper': it must not be below 'lower'");

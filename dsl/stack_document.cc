@@ -122,6 +122,7 @@ class DocumentReader {
     if (root.text_at != nowhere)
       findings_.error(code::stray_text, *root.source, root.text_at, 1, "text must not stand in <" + root.name + ">");
     for (const XmlAttribute& attribute : root.attributes) {
+      if (isSchemaHint(attribute)) continue;
       if (root.name == "stack" && (attribute.name == "format" || attribute.name == "name")) {
         if (attribute.name == "format" && attribute.value != "1")
           findings_.errorAtValue(code::wrong_format, root, attribute,
@@ -222,6 +223,35 @@ class DocumentReader {
 std::string pathBeside(const std::string& from, const std::string& file) {
   const fs::path path(file);
   return path.is_absolute() ? file : (fs::path(from).parent_path() / path).lexically_normal().string();
+}
+
+std::vector<std::string> loadPlugins(const XmlElement& root, const std::function<void(const std::string&)>& load,
+                                     Findings& findings) {
+  std::vector<std::string> loaded;
+  bool failed = false;
+  for (const auto& child : root.children) {
+    const XmlAttribute* name = child->name == "plugin" ? child->attribute("name") : nullptr;
+    if (!name || std::find(loaded.begin(), loaded.end(), name->value) != loaded.end()) continue;
+    std::string reason = "this program loads no plugins";
+    try {
+      if (load) {
+        load(name->value);
+        loaded.push_back(name->value);
+        continue;
+      }
+    } catch (const std::exception& error) {
+      reason = error.what();
+    }
+    failed = true;
+    Findings alone;
+    alone.errorAtValue(code::plugin_failed, *child, *name,
+                       "the plugin '" + name->value + "' cannot be loaded: " + reason);
+    Diagnostic diagnostic = alone.errors().front();
+    diagnostic.exit_code = 4;
+    findings.add(std::move(diagnostic));
+  }
+  if (failed) findings.throwErrors();
+  return loaded;
 }
 
 StackDocument readDocument(const std::string& file, const std::map<std::string, std::string>& set, Findings& findings) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -21,6 +22,11 @@ struct StackDocument {
 /// Null root, and errors in `findings`, when the file is not a stack at all; other errors leave a tree to check on.
 /// A value that still holds "${" is one whose error has been told.
 StackDocument readDocument(const std::string& file, const std::map<std::string, std::string>& set, Findings& findings);
+
+/// Loads what every <plugin> names, in order and each once, before anything else is checked: plugins bring the elements
+/// that the rest is made of.  Throws the errors when one cannot be loaded.  Returns the names.
+std::vector<std::string> loadPlugins(const XmlElement& root, const std::function<void(const std::string&)>& load,
+                                     Findings& findings);
 
 /// The file as written in `from`: relative to the folder of that file.
 std::string pathBeside(const std::string& from, const std::string& file);

@@ -238,7 +238,8 @@ ElementRow targetRow() {
           .attributes = {{.name = "metric", .type = ValueType::text, .required = true,
                           .description = "A key of `metrics` in run.json, such as contact_force_mean_N."},
                          {.name = "lower", .type = ValueType::real, .description = "Least value; one bound at least."},
-                         {.name = "upper", .type = ValueType::real, .description = "Greatest value."}}};
+                         {.name = "upper", .type = ValueType::real, .description = "Greatest value."}},
+          .presence = {{control::Presence::any_of, {"lower", "upper"}}}};
 }
 
 ElementRow recordRow() {

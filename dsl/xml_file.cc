@@ -56,6 +56,10 @@ std::string XmlElement::path() const {
   return text;
 }
 
+bool isSchemaHint(const XmlAttribute& attribute) {
+  return attribute.name == "xmlns:xsi" || attribute.name == "xsi:noNamespaceSchemaLocation";
+}
+
 std::unique_ptr<XmlElement> parseXml(std::shared_ptr<const XmlSource> source, Findings& findings) {
   const std::string& text = source->text.text();
   if (const auto bad = source->text.firstBadByte()) {

@@ -44,6 +44,9 @@ struct XmlElement {
   std::string path() const;
 };
 
+/// Attributes by which editors find the schema: they mean nothing to us, on an outermost element.
+bool isSchemaHint(const XmlAttribute& attribute);
+
 /// Parses text that has been read.  Null, and one error in `findings`, when it is not one XML element.
 std::unique_ptr<XmlElement> parseXml(std::shared_ptr<const XmlSource> source, Findings& findings);
 

@@ -101,6 +101,44 @@ TEST(Docs, WhatCommandsPrintIsWhatThePagesShow) {
   EXPECT_GE(commands, 4);
 }
 
+/// Pages that are made from the element table are those that it makes now.
+TEST(Docs, TheReferenceIsWhatTheTableSays) {
+  const tactus::testing::TemporaryFolder folder;
+  std::string said;
+  ASSERT_EQ(shell(kProgram + " schema md --out " + folder.path() + " && " + kProgram + " schema xsd --out " + folder.path(),
+                  &said), 0) << said;
+  EXPECT_EQ(shell("diff -r " + folder.path() + " " TACTUS_SOURCE_DIR "/docs/reference", &said), 0)
+      << said << "make it again: tactus schema md --out docs/reference; tactus schema xsd --out docs/reference";
+}
+
+/// Every valid stack of the project, as editors see it.
+TEST(Docs, EveryStackValidatesAgainstTheSchema) {
+  const std::string schema = TACTUS_SOURCE_DIR "/docs/reference/stack.xsd";
+  std::string said;
+  if (shell("command -v xmllint", &said) != 0) GTEST_SKIP() << "xmllint is not installed";
+  const tactus::testing::TemporaryFolder folder;
+  std::vector<std::string> files;
+  for (const char* room : {"examples", "bench", "tests/apps/data", "tests/golden"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(TACTUS_SOURCE_DIR) / room)) {
+      if (!entry.is_regular_file()) continue;
+      std::ifstream in(entry.path());
+      const std::string text((std::istreambuf_iterator<char>(in)), {});
+      if (entry.path().extension() == ".xml" && text.find("<stack") != std::string::npos) files.push_back(entry.path());
+    }
+  }
+  for (const fs::path& page : pages())
+    for (const std::string& stack : stacks(page)) files.push_back(folder.write(std::to_string(files.size()) + ".xml", stack));
+  ASSERT_GE(files.size(), 6u);
+  for (const std::string& file : files)
+    EXPECT_EQ(shell("xmllint --noout --schema " + schema + " " + file, &said), 0) << said;
+
+  const std::string misspelled = folder.write("misspelled.xml",
+                                              "<stack format=\"1\"><robot model=\"lwr_allegro\"/><level priority=\"1\">"
+                                              "<posture name=\"rest\" stifness=\"1\"/></level></stack>");
+  EXPECT_NE(shell("xmllint --noout --schema " + schema + " " + misspelled, &said), 0);
+  EXPECT_NE(said.find("'stifness' is not allowed"), std::string::npos) << said;
+}
+
 /// README's first stack settles: no torque is cut, and all back ends that it names agree.
 TEST(Docs, TheFirstStackIsStable) {
   const tactus::testing::TemporaryFolder folder;

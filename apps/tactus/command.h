@@ -45,6 +45,9 @@ void addDynamics(CLI::App& program, Context& context);
 void addGolden(CLI::App& program, Context& context);
 void addPlugins(CLI::App& program, Context& context);
 void addExplain(CLI::App& program, Context& context);
+void addFormat(CLI::App& program, Context& context);
+void addMigrate(CLI::App& program, Context& context);
+void addSchema(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
 void addNew(CLI::App& program, Context& context);
 

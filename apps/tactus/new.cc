@@ -33,7 +33,8 @@ void checkFree(const std::string& name) {
   static const std::set<std::string> of_cmake{"all",     "clean", "codegen", "edit_cache", "help",
                                               "install", "list_install_components", "package", "package_source",
                                               "rebuild_cache", "test"};
-  if (of_cmake.contains(name)) throw UsageError("a plugin cannot be called '" + name + "': CMake has a target of that name");
+  if (of_cmake.contains(name))
+    throw UsageError("a plugin cannot be called '" + name + "': CMake has a target of that name");
   Program program(std::vector<std::string>{});
   for (const runtime::LoadedPlugin& plugin : program.plugins().loaded())
     if (plugin.name == name) throw UsageError("'" + name + "' is a plugin that Tactus ships; take another name");
@@ -49,7 +50,8 @@ std::string packageFolder() {
 
 std::string filled(std::string text, const std::string& name) {
   const auto replace = [&](std::string_view word, const std::string& by) {
-    for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += by.size()) text.replace(at, word.size(), by);
+    for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += by.size())
+      text.replace(at, word.size(), by);
   };
   replace("@NAME@", name);
   replace("@TACTUS_DIR@", packageFolder());
@@ -110,7 +112,8 @@ void addKind(CLI::App& command, Context& context, const char* kind, const char* 
   kind_command->add_option("NAME", *name, "Begins with a letter; letters, digits, '_' and '-' follow")
       ->required()
       ->type_name("");
-  kind_command->add_option("--out", *out, "The folder in which it is made; the working one without it")->type_name("DIR");
+  kind_command->add_option("--out", *out, "The folder in which it is made; the working one without it")
+      ->type_name("DIR");
   kind_command->footer(command.get_footer());
   kind_command->callback([=, &context] { context.action = [=] { return make(*name, *out); }; });
 }
@@ -125,7 +128,8 @@ void addNew(CLI::App& program, Context& context) {
 Examples:
   tactus new plugin acme
   tactus new stack first --out stacks)");
-  addKind(*command, context, "plugin", "A folder with a task, its test, a stack, CMakeLists.txt and README.md", newPlugin);
+  addKind(*command, context, "plugin", "A folder with a task, its test, a stack, CMakeLists.txt and README.md",
+          newPlugin);
   addKind(*command, context, "stack", "A stack that lifts an arm: NAME.xml", newStack);
 }
 

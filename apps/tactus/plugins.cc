@@ -7,6 +7,7 @@
 #include "apps/tactus/stack_arguments.h"
 #include "apps/tactus/text.h"
 #include "conformance/conformance.h"
+#include "dsl/element_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -49,33 +50,6 @@ int list(const std::vector<std::string>& paths, bool json) {
   }
   for (const std::string& refusal : refused) std::cerr << "refused: " << refusal << "\n";
   return refused.empty() ? exit_done : exit_plugin;
-}
-
-ordered_json describe(const control::ElementRow& row) {
-  ordered_json json{{"name", row.name}, {"description", row.description}, {"attributes", ordered_json::array()}};
-  for (const control::AttributeRow& attribute : row.attributes) {
-    ordered_json& added = json["attributes"].emplace_back(
-        ordered_json{{"name", attribute.name}, {"required", attribute.required}, {"description", attribute.description}});
-    if (!attribute.unit.empty()) added["unit"] = attribute.unit;
-    if (attribute.default_text) added["default"] = *attribute.default_text;
-  }
-  json["ports"] = ordered_json::array();
-  for (const control::PortRow& port : row.ports)
-    json["ports"].push_back({{"name", port.name}, {"type", port.type}, {"description", port.description}});
-  return json;
-}
-
-/// One line each for the element, its attributes and its ports.
-std::string textOf(const control::ElementRow& row) {
-  std::string text = "<" + row.name + ">: " + row.description + "\n";
-  for (const control::AttributeRow& attribute : row.attributes) {
-    text += "  " + attribute.name;
-    if (attribute.default_text) text += "=\"" + *attribute.default_text + "\"";
-    if (attribute.unit != "1" && !attribute.unit.empty()) text += " " + attribute.unit;
-    text += (attribute.required ? ", required: " : ": ") + attribute.description + "\n";
-  }
-  for (const control::PortRow& port : row.ports) text += "  port " + port.name + ": " + port.description + "\n";
-  return text;
 }
 
 /// What `info` and `check` were asked about.
@@ -132,8 +106,8 @@ int info(const std::string& asked, const std::vector<std::string>& paths, bool j
   }
   for (const control::ElementRow& row : chosen.program.registry().elements().rows()) {
     if (std::find(chosen.elements.begin(), chosen.elements.end(), row.name) == chosen.elements.end()) continue;
-    elements.push_back(describe(row));
-    text += (text.empty() ? "" : "\n") + textOf(row);
+    elements.push_back(dsl::elementJson(row));
+    text += (text.empty() ? "" : "\n") + dsl::elementText(row);
   }
   out["elements"] = elements;
   std::cout << (json ? out.dump(2) + "\n" : text);

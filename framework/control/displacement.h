@@ -7,9 +7,10 @@
 /// How far things fixed to a link move from one state of the robot to another: what Task::displacement is made of.
 namespace tactus::control {
 
-/// Of the point of `frame` that was at `point_W` in the state `from`; m, world axes.  To first order pointJacobian · Δq.
-inline Eigen::Vector3d pointDisplacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to, int frame,
-                                         const Eigen::Vector3d& point_W) {
+/// Of the point of `frame` that was at `point_W` in the state `from`; m, world axes.
+/// To first order pointJacobian · Δq.
+inline Eigen::Vector3d pointDisplacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                                         int frame, const Eigen::Vector3d& point_W) {
   return to.framePose(frame) * (from.framePose(frame).inverse() * point_W) - point_W;
 }
 

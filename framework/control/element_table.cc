@@ -46,6 +46,15 @@ void checkRow(const ElementRow& row) {
     checkAttribute(where, attribute);
     if (!names.insert(attribute.name).second) refuse(where + ": attribute '" + attribute.name + "' stands twice");
   }
+  for (const AttributeRow& attribute : row.attributes)
+    for (const std::string& former : attribute.formerly)
+      if (!isElementName(former) || !names.insert(former).second)
+        refuse(where + ": attribute '" + attribute.name + "' cannot once have been '" + former + "'");
+  for (const PresenceRule& rule : row.presence) {
+    if (rule.attributes.size() < 2) refuse(where + ": a presence rule has at least two attributes");
+    for (const std::string& name : rule.attributes)
+      if (!row.attribute(name)) refuse(where + ": a presence rule names '" + name + "', which is no attribute");
+  }
   std::set<std::string> ports;
   for (const PortRow& port : row.ports) {
     if (!isElementName(port.name)) refuse(where + ": '" + port.name + "' is not a name for a port");
@@ -59,10 +68,28 @@ void checkRow(const ElementRow& row) {
 
 }  // namespace
 
+bool ChildRow::allows(const ElementRow& row) const {
+  switch (row.kind) {
+    case ElementKind::task: return element == "@task";
+    case ElementKind::signal: return element == "@signal";
+    case ElementKind::shape: return element == "@shape";
+    case ElementKind::structure: return element == row.name;
+    case ElementKind::back_end: break;                             // no element of its own
+  }
+  return false;
+}
+
 const AttributeRow* ElementRow::attribute(std::string_view wanted) const {
   const auto found = std::find_if(attributes.begin(), attributes.end(),
                                   [&](const AttributeRow& attribute) { return attribute.name == wanted; });
   return found == attributes.end() ? nullptr : &*found;
+}
+
+const AttributeRow* ElementRow::formerAttribute(std::string_view name) const {
+  for (const AttributeRow& attribute : attributes)
+    if (std::find(attribute.formerly.begin(), attribute.formerly.end(), name) != attribute.formerly.end())
+      return &attribute;
+  return nullptr;
 }
 
 void ElementTable::add(ElementRow row) {
@@ -70,6 +97,10 @@ void ElementTable::add(ElementRow row) {
   const bool back_end = row.kind == ElementKind::back_end;
   if (back_end ? findBackEnd(row.name) : find(row.name))
     refuse((back_end ? "back end '" : "element '") + row.name + "' is in the table already");
+  for (const std::string& former : row.formerly)
+    if (!isElementName(former) || back_end || find(former) || findFormer(former))
+      refuse("element '" + row.name + "' cannot once have been '" + former + "'");
+  if (!back_end && findFormer(row.name)) refuse("element '" + row.name + "' is the former name of another one");
   rows_.push_back(std::move(row));
 }
 
@@ -82,6 +113,12 @@ const ElementRow* ElementTable::find(std::string_view name) const {
 const ElementRow* ElementTable::findBackEnd(std::string_view name) const {
   for (const ElementRow& row : rows_)
     if (row.kind == ElementKind::back_end && row.name == name) return &row;
+  return nullptr;
+}
+
+const ElementRow* ElementTable::findFormer(std::string_view name) const {
+  for (const ElementRow& row : rows_)
+    if (std::find(row.formerly.begin(), row.formerly.end(), name) != row.formerly.end()) return &row;
   return nullptr;
 }
 

@@ -32,7 +32,7 @@ enum class ValueType {
 
 /// What numbers in world axes are: what becomes of them where the whole world is turned and moved.
 enum class InWorld {
-  no,                                                              ///< they stay: gains, lengths, values in a link's axes
+  no,                                                              ///< gains, lengths, values in a link's axes
   positions,                                                       ///< groups of 3
   directions,                                                      ///< groups of 3
   orientation,                                                     ///< roll, pitch, yaw about fixed axes
@@ -53,12 +53,33 @@ struct AttributeRow {
   InWorld in_world = InWorld::no;
   std::vector<std::string> choices = {};                   ///< for `choice`; for joints, links, ports: extra words
   std::string port_type = {};                                           ///< for `port`
+  std::string since = {};                                  ///< version that brought it; "" = it was there from the start
+  std::string deprecated = {};                             ///< what to write instead, a sentence; "" = it is not
+  std::vector<std::string> formerly = {};                  ///< older names: read with a warning, rewritten by migrate
 };
+
+/// What holds between attributes of one element; a value that only the table gives counts as not given.
+enum class Presence {
+  exclusive,                                                       ///< at most one of them
+  together,                                                        ///< all of them or none
+  any_of,                                                          ///< at least one
+  one_of,                                                          ///< exactly one
+  needs                                                            ///< the first needs all the others
+};
+
+struct PresenceRule {
+  Presence kind = Presence::exclusive;
+  std::vector<std::string> attributes;                             ///< at least two
+};
+
+struct ElementRow;
 
 struct ChildRow {
   std::string element;                                      ///< name, or "@task", "@signal", "@shape" for all of a kind
   int min = 0;
   int max = -1;                                                    ///< -1 = any number
+
+  bool allows(const ElementRow& row) const;
 };
 
 /// An output that a signal offers, written signal.port.
@@ -79,9 +100,15 @@ struct ElementRow {
   std::vector<AttributeRow> attributes = {};
   std::vector<ChildRow> children = {};
   std::vector<PortRow> ports = {};                                      ///< of signals
+  std::vector<PresenceRule> presence = {};
+  std::string since = {};                                               ///< as for attributes
+  std::string deprecated = {};
+  std::vector<std::string> formerly = {};
   bool takes_back_end_options = false;                                  ///< those of the one that `backend` names
 
   const AttributeRow* attribute(std::string_view name) const;
+  /// The attribute that once had this name, or null.
+  const AttributeRow* formerAttribute(std::string_view name) const;
 };
 
 class ElementTable {
@@ -91,6 +118,8 @@ class ElementTable {
   /// Back ends are looked up apart: their rows are the extra attributes of elements that take back-end options.
   const ElementRow* find(std::string_view name) const;
   const ElementRow* findBackEnd(std::string_view name) const;
+  /// The element, no back end, that once had this name, or null.
+  const ElementRow* findFormer(std::string_view name) const;
   const std::deque<ElementRow>& rows() const { return rows_; }
 
  private:

@@ -13,8 +13,8 @@ std::string programFolder() { return fs::canonical("/proc/self/exe").parent_path
 
 namespace {
 
-/// Where bin, lib and share stand: beside the program, or, of a program from elsewhere such as a plugin's own test, above
-/// this library.
+/// Where bin, lib and share stand: beside the program, or, of a program from elsewhere such as a plugin's own test,
+/// above this library.
 fs::path root() {
   const fs::path beside = fs::path(programFolder()).parent_path();
   if (fs::exists(beside / "share" / "tactus")) return beside;

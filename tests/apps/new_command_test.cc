@@ -62,7 +62,8 @@ TEST(NewPlugin, ThePageAboutPluginsShowsTheCommandsOfItsReadme) {
 /// Every name that is taken can begin an element's name, and every other one is refused.
 TEST(NewPlugin, NamesAreThoseThatElementsCanBeginWith) {
   const TemporaryFolder folder;
-  for (const std::string name : {"a", "acme", "acme-2", "Acme_x", "1acme", "acme.x", "ac me", "-x", "acme/x", "", "äcme"}) {
+  for (const std::string name :
+       {"a", "acme", "acme-2", "Acme_x", "1acme", "acme.x", "ac me", "-x", "acme/x", "", "äcme"}) {
     control::ElementTable table;
     bool fits = name.find('.') == std::string::npos;
     try {

@@ -95,14 +95,14 @@ TEST(PluginsInfo, TellsTheHandshakeAndTheElements) {
   EXPECT_EQ(info["abi"], 2);
   EXPECT_EQ(info["eigen_max_align"], 16);
   EXPECT_EQ(info["elements"][0]["name"], "lawless.good");
-  const nlohmann::json& target = info["elements"][0]["attributes"][3];
-  EXPECT_EQ(target["name"], "target");
-  EXPECT_EQ(target["unit"], "m");
-  EXPECT_EQ(target["default"], "0.6 0.1 0.3");
+  const nlohmann::json* target = find(info["elements"][0]["attributes"], "target");
+  ASSERT_TRUE(target);
+  EXPECT_EQ((*target)["unit"], "m");
+  EXPECT_EQ((*target)["default"], "0.6 0.1 0.3");
 
   const std::string text = tactus({"plugins", "info", LAWLESS}).out;
   EXPECT_THAT(text, HasSubstr("lawless 1.0.0"));
-  EXPECT_THAT(text, HasSubstr("  target=\"0.6 0.1 0.3\" m: World axes.\n"));
+  EXPECT_THAT(text, HasSubstr("  target: 3 numbers; m; default 0.6 0.1 0.3\n      World axes.\n"));
 }
 
 TEST(PluginsInfo, KnowsPluginsByName) {

@@ -57,7 +57,8 @@ TEST_F(Lawless, GoodOnesBreakNone) {
 }
 
 TEST_F(Lawless, NothingIsLeftOutOfOneThatAsksForAccelerations) {
-  for (const Finding& finding : check("lawless.good").findings) EXPECT_EQ(finding.outcome, Outcome::kept) << finding.law;
+  for (const Finding& finding : check("lawless.good").findings)
+    EXPECT_EQ(finding.outcome, Outcome::kept) << finding.law;
 }
 
 TEST_F(Lawless, Tasks) {

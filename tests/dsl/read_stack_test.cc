@@ -310,7 +310,7 @@ TEST(ReadStack, TargetsHaveBounds) {
   EXPECT_FALSE(stack.run.targets[0].upper);
   EXPECT_EQ(stack.run.targets[1].upper, 0);
   EXPECT_THAT(errors(with("<target metric=\"a\"/>")),
-              ElementsAre("5:6 E013 <target> needs 'lower' or 'upper', or both"));
+              ElementsAre("5:6 E013 <target> needs at least one of 'lower', 'upper'"));
   EXPECT_THAT(errors(with("<target metric=\"a\" lower=\"2\" upper=\"1\"/>")),
               ElementsAre("5:42 E014 attribute 'upper': it must not be below 'lower'"));
   EXPECT_THAT(errors(with("<target metric=\"a\" lower=\"2\"/><target metric=\"a\" upper=\"1\"/>")),

@@ -1,7 +1,7 @@
 // What a user does with an installed Tactus: makes a plugin, builds, tests and runs it; copies an example; is refused.
 //
-// Strategy: `cmake --install` into a folder that is then moved, so that nothing can lean on where it was built or first put.
-// Not tested here: the Debian package itself (scripts/package).
+// Strategy: `cmake --install` into a folder that is then moved, so that nothing can lean on where it was built or first
+// put. Not tested here: the Debian package itself (scripts/package).
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -55,7 +55,8 @@ class Installed : public ::testing::Test {
   /// make, and with Eigen's checks.
   static Said build(const std::string& source, const std::string& flags = "", const std::string& target = "all") {
     return shell("cmake -S " + source + " -B " + source + "/build -DCMAKE_BUILD_TYPE=Debug -DTactus_DIR=" +
-                 package.string() + " -DCMAKE_CXX_FLAGS='" + flags + "' && cmake --build " + source + "/build --target " +
+                 package.string() + " -DCMAKE_CXX_FLAGS='" + flags + "' && cmake --build " + source +
+                 "/build --target " +
                  target);
   }
 
@@ -107,7 +108,8 @@ TEST_F(Installed, ProgramFindsItsOwnPluginsAndModels) {
   EXPECT_THAT(said.text, ::testing::Not(HasSubstr(TACTUS_BINARY_DIR)));
 }
 
-/// By the commands of the README that `new plugin` writes, as they stand there.  Its test gets the one of docs/plugins.md.
+/// By the commands of the README that `new plugin` writes, as they stand there.  Its test gets the one of
+/// docs/plugins.md.
 TEST_F(Installed, ANewPluginIsBuiltTestedCheckedAndRun) {
   const std::string readme = tactus::testing::contentOf(newPlugin() + "/README.md");
   const std::string page = tactus::testing::contentOf(TACTUS_SOURCE_DIR "/docs/plugins.md");
@@ -120,7 +122,8 @@ TEST_F(Installed, ANewPluginIsBuiltTestedCheckedAndRun) {
   const size_t begin = readme.find("```sh\n") + 6;
   const std::string commands = readme.substr(begin, readme.find("\n```", begin) - begin);
   EXPECT_THAT(commands, HasSubstr("-DTactus_DIR=" + package.string()));
-  const Said said = shell("set -e; export PATH=" + prefix() + "/bin:$PATH; cd " + own.file("acme") + "\n" + commands + "\n");
+  const Said said =
+      shell("set -e; export PATH=" + prefix() + "/bin:$PATH; cd " + own.file("acme") + "\n" + commands + "\n");
   EXPECT_EQ(said.exit_code, 0) << said.text;
   EXPECT_THAT(said.text, AllOf(HasSubstr("100% tests passed"), HasSubstr("\nconforms\n"),
                                HasSubstr("acme-reach with null-space, seed 1: done")));
@@ -147,7 +150,8 @@ TEST_F(Installed, APluginOfAnotherEigenAlignmentIsRefused) {
   const std::string acme = newPlugin();
   const Said said = build(acme, "-mavx", "acme");
   ASSERT_EQ(said.exit_code, 0) << said.text;
-  expectRefused(acme, "built with an Eigen alignment of 32 bytes, but this program has 16 bytes; rebuild it without -march=native");
+  expectRefused(acme, "built with an Eigen alignment of 32 bytes, but this program has 16 bytes; "
+                      "rebuild it without -march=native");
 }
 #endif
 

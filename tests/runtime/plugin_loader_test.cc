@@ -74,8 +74,8 @@ TEST_F(PluginLoaderTest, NoEntrySymbol) {
 
 TEST_F(PluginLoaderTest, UndefinedSymbol) {
   EXPECT_THAT(refusalOf(library("undefined")),
-              AllOf(HasSubstr("cannot be loaded: "), HasSubstr("undefined symbol: "), HasSubstr("functionOfAnotherLibrary"),
-                    HasSubstr("; link what defines it into the plugin")));
+              AllOf(HasSubstr("cannot be loaded: "), HasSubstr("undefined symbol: "),
+                    HasSubstr("functionOfAnotherLibrary"), HasSubstr("; link what defines it into the plugin")));
 }
 
 TEST_F(PluginLoaderTest, ThrowingEntryFunction) {
@@ -101,7 +101,8 @@ TEST_F(PluginLoaderTest, WrongMagic) {
 
 TEST_F(PluginLoaderTest, WrongAbi) {
   EXPECT_THAT(refusalOf(library("abi")),
-              HasSubstr("built with plugin ABI 99, but this program has 2; rebuild it against this Tactus"));
+              HasSubstr("built with plugin ABI 99, but this program has " +
+                        std::to_string(plugin_abi) + "; rebuild it against this Tactus"));
 }
 
 TEST_F(PluginLoaderTest, WrongSize) {

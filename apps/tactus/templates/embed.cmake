@@ -1,8 +1,7 @@
 # cmake -DFOLDER=… -DOUTPUT=… -P embed.cmake: every file of the templates' folders as C++.
 file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*/*)
-set(source "#include \"apps/tactus/templates.h\"\n\nnamespace tactus::app {\n\nstd::span<const Template> templates() {\n"
-           "  static const Template all[] = {\n")
-string(CONCAT source ${source})
+string(CONCAT source "#include \"apps/tactus/templates.h\"\n\nnamespace tactus::app {\n\n"
+              "std::span<const Template> templates() {\n  static const Template all[] = {\n")
 foreach(file ${files})
   file(READ ${FOLDER}/${file} content)
   string(APPEND source "      {\"${file}\", R\"=====(${content})=====\"},\n")

@@ -6,18 +6,19 @@
 
 /// The back end `damped.cascade`: level by level, a damped pseudo-inverse in what the levels above leave.
 ///
-/// In whitened coordinates, M = L Lᵀ, y = L⁻¹τ, the acceleration of a level's rows is A y with A = J L⁻ᵀ, and it asks for
-/// a = A L⁻¹Σ JᵀF (or for `acceleration`, where a task gives it).  From the highest level down, with N the projector onto what
-/// is left and y what has been settled (Siciliano & Slotine 1991, on accelerations), B = A N has right singular vectors v_k and
-/// singular values σ_k:
+/// In whitened coordinates, M = L Lᵀ, y = L⁻¹τ, the acceleration of a level's rows is A y with A = J L⁻ᵀ, and it asks
+/// for a = A L⁻¹Σ JᵀF (or for `acceleration`, where a task gives it).  From the highest level down, with N the
+/// projector onto what is left and y what has been settled (Siciliano & Slotine 1991, on accelerations), B = A N has
+/// right singular vectors v_k and singular values σ_k:
 ///
 ///   y ← y + Bᵀ(B Bᵀ + μ² I)⁻¹(a − A y) = y + Σ v_k v_kᵀBᵀ(a − A y) / (σ_k² + μ²),   μ = λ ‖A‖_F
 ///   N ← N − Σ v_k v_kᵀ over σ_k > τ ‖A‖_F
 ///
-/// The damped inverse (Nakamura & Hanafusa 1986) adds at most ‖a − A y‖/(2μ) also in a singular configuration, where a true
-/// inverse would ask for a boundless torque; the price is that a level reaches only σ²/(σ² + μ²) of what it asks for in each
-/// direction.  The projector is not damped (Chiaverini 1997): one made of damped inverses leaves μ²/(σ² + μ²) of each
-/// direction to the levels below, which divide by it and take all of it.  So the levels are strict, in the directions above τ.
+/// The damped inverse (Nakamura & Hanafusa 1986) adds at most ‖a − A y‖/(2μ) also in a singular configuration, where a
+/// true inverse would ask for a boundless torque; the price is that a level reaches only σ²/(σ² + μ²) of what it asks
+/// for in each direction.  The projector is not damped (Chiaverini 1997): one made of damped inverses leaves μ²/(σ² +
+/// μ²) of each direction to the levels below, which divide by it and take all of it.  So the levels are strict, in the
+/// directions above τ.
 ///
 /// It honours neither inequalities nor friction; torque limits are met by scaling the whole torque.
 class Cascade final : public tactus::control::BackEnd {

@@ -4,10 +4,10 @@
 
 /// `<plane.fit>`: the plane through all points touched so far, by total least squares (Pearson 1901).
 ///
-/// With the points p_i (m, world axes), their mean p̄ and scatter S = Σ (p_i − p̄)(p_i − p̄)ᵀ, the plane that is nearest to
-/// them in the sense of Σ dist² goes through p̄, and its normal n is the eigenvector of the smallest eigenvalue λ₀ of S; n is
-/// turned so that it points against the mean contact normal, out of the surface.  Mean and scatter are updated point by point
-/// (Welford 1962), so a tick costs the same however many points there are:
+/// With the points p_i (m, world axes), their mean p̄ and scatter S = Σ (p_i − p̄)(p_i − p̄)ᵀ, the plane that is
+/// nearest to them in the sense of Σ dist² goes through p̄, and its normal n is the eigenvector of the smallest
+/// eigenvalue λ₀ of S; n is turned so that it points against the mean contact normal, out of the surface.  Mean and
+/// scatter are updated point by point (Welford 1962), so a tick costs the same however many points there are:
 ///
 ///   p̄ ← p̄ + (p − p̄)/N,   S ← S + (p − p̄_old)(p − p̄_new)ᵀ.
 ///

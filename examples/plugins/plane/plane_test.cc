@@ -10,7 +10,9 @@ namespace {
 
 using tactus::conformance::Bench;
 
-double port(const Bench& bench, const char* name) { return *static_cast<const double*>(bench.signal("floor").port(name)); }
+double port(const Bench& bench, const char* name) {
+  return *static_cast<const double*>(bench.signal("floor").port(name));
+}
 
 /// Touches `count` random points of a plane that leans by `tilt` about x, each `noise` off; one finger, one tick each.
 void touchPlane(Bench& bench, double tilt, int count, double noise) {

@@ -9,7 +9,8 @@ using namespace tactus::control;
 void Admittance::registerIn(Registry& registry) {
   ElementRow row;
   row.name = "wrist.admittance";
-  row.description = "Gives way to the wrench at the wrist like a mass, damper and spring; presses where the spring is zero.";
+  row.description =
+      "Gives way to the wrench at the wrist like a mass, damper and spring; presses where the spring is zero.";
   row.source = "Hogan 1985; Siciliano & Villani 1999, 3.2; Seraji 1994";
   row.attributes = {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link that gives way."},
@@ -55,7 +56,8 @@ Admittance::Admittance(const BuildContext& context)
 }
 
 void Admittance::moveCompliantFrame(double dt) {
-  const Eigen::Vector3d force = wrench_.force_W + wanted_W_ - damping_.cwiseProduct(e_rate_) - stiffness_.cwiseProduct(e_);
+  const Eigen::Vector3d force =
+      wrench_.force_W + wanted_W_ - damping_.cwiseProduct(e_rate_) - stiffness_.cwiseProduct(e_);
   e_rate_ += dt * force.cwiseQuotient(mass_);
   if (e_rate_.norm() > speed_) e_rate_ *= speed_ / e_rate_.norm();
   e_ += dt * e_rate_;

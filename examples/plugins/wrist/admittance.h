@@ -5,20 +5,20 @@
 
 namespace wrist {
 
-/// `<wrist.admittance>`: a hand that gives way to what it feels at the wrist, with a mass, a damper and a spring of one's
-/// choice, and presses with a wanted force where the spring is zero.
+/// `<wrist.admittance>`: a hand that gives way to what it feels at the wrist, with a mass, a damper and a spring of
+/// one's choice, and presses with a wanted force where the spring is zero.
 ///
 /// The outer loop moves a compliant frame x_c away from the reference x_r by e, per axis of the world (Hogan 1985;
 /// Siciliano & Villani, Robot Force Control, 1999, sec. 3.2; Seraji 1994 for the force set-point):
 ///
 ///   M ë + D ė + K e = f + f_d        f: what the world does to the hand (N), f_d: the force wanted on the world
 ///
-/// integrated by semi-implicit Euler steps.  At rest K e = f + f_d: in a stiff axis the hand stands K⁻¹f beside x_r, in one
-/// with K = 0 it moves until f = −f_d, so that it presses with f_d.  Without contact such an axis drifts with f_d / D;
-/// `speed` bounds ‖ė‖.
+/// integrated by semi-implicit Euler steps.  At rest K e = f + f_d: in a stiff axis the hand stands K⁻¹f beside x_r, in
+/// one with K = 0 it moves until f = −f_d, so that it presses with f_d.  Without contact such an axis drifts with
+/// f_d / D; `speed` bounds ‖ė‖.
 ///
-/// The inner loop is a spring and damper towards x_c, and holds the orientation of the first tick; six equality rows, the
-/// frame Jacobian (linear rows first, world axes):
+/// The inner loop is a spring and damper towards x_c, and holds the orientation of the first tick; six equality rows,
+/// the frame Jacobian (linear rows first, world axes):
 ///
 ///   F = ( k (x_c − x) − d (ẋ − ė),   k_r Ψ − d_r ω )
 ///

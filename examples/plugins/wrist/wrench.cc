@@ -13,7 +13,8 @@ void WrenchSensor::registerIn(Registry& registry) {
       {.name = "filter", .type = ValueType::real, .unit = "s", .default_text = "0.005",
        .description = "Time constant of its low-pass.", .lower = 0},
   };
-  row.ports = {{"wrench", "wrist.wrench", "N", "Force and moment that the world exerts, about the link's origin, world axes."},
+  row.ports = {{"wrench", "wrist.wrench", "N",
+                "Force and moment that the world exerts, about the link's origin, world axes."},
                {"force", "scalar", "N", "Length of the force."}};
   registry.addSignal(row, [](const BuildContext& context) { return std::make_unique<WrenchSensor>(context); });
 }

@@ -12,13 +12,14 @@ struct Wrench {
 
 /// `<wrist.wrench>`: a force–torque sensor at a link, made of the contacts of the skin beyond it.
 ///
-/// With the contact forces f_i that the robot exerts at p_i (along the normal and tangentially), and p the link's origin,
+/// With the contact forces f_i that the robot exerts at p_i (along the normal and tangentially), and p the link's
+/// origin,
 ///
 ///   force = −Σ f_i,   moment = −Σ (p_i − p) × f_i,
 ///
-/// each through a first-order low-pass of time constant `filter`, as a real sensor's electronics has one.  A contact counts
-/// when its link hangs at the sensor's link, itself included.  A sensor under a real hand feels the hand's weight and inertia
-/// too, which a driver takes off; here nothing of that is in the contacts.
+/// each through a first-order low-pass of time constant `filter`, as a real sensor's electronics has one.  A contact
+/// counts when its link hangs at the sensor's link, itself included.  A sensor under a real hand feels the hand's
+/// weight and inertia too, which a driver takes off; here nothing of that is in the contacts.
 class WrenchSensor final : public tactus::control::Signal {
  public:
   explicit WrenchSensor(const tactus::control::BuildContext& context);

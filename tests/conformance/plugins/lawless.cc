@@ -41,7 +41,8 @@ class Spring final : public Task {
     if (fault_ == "jacobian" || fault_ == "jacobian-untold") rows.jacobian.col(1) *= -1;
     if (fault_ == "rows") rows.rows = 4;
     if (fault_ == "rows-nan") rows.force[1] = std::nan("");
-    if (fault_ == "allocation") rows.force.head<3>() += 0 * Eigen::VectorXd(Eigen::MatrixXd::Ones(3, 50).rowwise().sum());
+    if (fault_ == "allocation")
+      rows.force.head<3>() += 0 * Eigen::VectorXd(Eigen::MatrixXd::Ones(3, 50).rowwise().sum());
     static long ticks_of_all = 0;
     if (fault_ == "determinism") rows.force[0] += 1e-13 * static_cast<double>(++ticks_of_all);
   }
@@ -98,7 +99,8 @@ class Sum final : public BackEnd {
 
 void registerElements(Registry& registry) {
   for (const std::string fault : {"good", "good-untold", "jacobian", "jacobian-untold", "bias", "frame", "allocation",
-                                  "determinism", "rows", "rows-nan", "instance", "attributes", "schema", "schema-unit"}) {
+                                  "determinism", "rows", "rows-nan", "instance", "attributes", "schema",
+                                  "schema-unit"}) {
     ElementRow row;
     row.name = "lawless." + fault;
     row.description = "A spring.";
@@ -111,7 +113,8 @@ void registerElements(Registry& registry) {
     if (fault == "attributes") row.attributes.push_back({.name = "idle", .description = "Nobody reads it."});
     registry.addTask(row, [fault](const BuildContext& context) { return std::make_unique<Spring>(context, fault); });
   }
-  for (const std::string fault : {"good", "ports", "ports-moving", "ports-nan", "allocation", "determinism", "schema"}) {
+  for (const std::string fault :
+       {"good", "ports", "ports-moving", "ports-nan", "allocation", "determinism", "schema"}) {
     ElementRow row;
     row.name = "lawless.clock-" + fault;
     row.description = "Tells the time.";
