@@ -1,9 +1,16 @@
-# find_package(Tactus), from the build tree as from an installed one: target Tactus::framework and tactus_add_plugin.
+# find_package(Tactus), from the build tree as from an installed one: tactus_add_plugin, and the targets
+# Tactus::framework and, for tests, Tactus::conformance.
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Tactus)
 
-install(TARGETS tactus_framework tactus_flags EXPORT TactusTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS tactus_framework tactus_conformance tactus_flags EXPORT TactusTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set_target_properties(tactus_framework tactus_conformance PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
 install(DIRECTORY framework DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus FILES_MATCHING PATTERN "*.h")
+install(FILES conformance/bench.h conformance/conformance.h conformance/report.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/conformance)
+install(FILES dsl/diagnostic.h dsl/stack.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/dsl)
 install(EXPORT TactusTargets NAMESPACE Tactus:: DESTINATION ${package_folder})
 export(EXPORT TactusTargets NAMESPACE Tactus:: FILE ${PROJECT_BINARY_DIR}/TactusTargets.cmake)
 

@@ -120,17 +120,17 @@ class DocumentReader {
     const std::string file = pathBeside(directive.source->text.file(), given.value);
     if (std::find(open_files_.begin(), open_files_.end(), identity(file)) != open_files_.end())
       return refuse(directive, code::reference_cycle,
-                                    "'" + given.value + "' includes itself, directly or through others");
+                    "'" + given.value + "' includes itself, directly or through others");
     if (!isAllowed(file))
       return refuse(directive, code::include_outside,
-                                    "'" + given.value + "' lies outside of the stack's folder; when you trust it, allow "
-                                    "its folder in TACTUS_INCLUDE_PATH");
+                    "'" + given.value + "' lies outside of the stack's folder; when you trust it, allow "
+                    "its folder in TACTUS_INCLUDE_PATH");
     std::vector<description::Place> way{directive.place()};
     way.insert(way.end(), directive.source->included_from.begin(), directive.source->included_from.end());
     const auto source = read(file, std::move(way));
     if (!source)
       return refuse(directive, code::unreadable_file,
-                                    "the file '" + given.value + "' cannot be read: looked for '" + file + "'");
+                    "the file '" + given.value + "' cannot be read: looked for '" + file + "'");
     if (tellTooLarge(*source)) return false;
     auto root = parseXml(source, findings_);
     if (!root || !fitsInto(element, *root)) return false;

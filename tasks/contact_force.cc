@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/control/displacement.h"
+
 namespace tactus::tasks {
 
 using namespace control;
@@ -59,6 +61,15 @@ void ContactForce::doUpdate(const Tick& tick, TickTask& rows) {
     error_ = std::max(error_, std::abs(contact.force_N - force_));
   }
   excess_.endTick();
+}
+
+bool ContactForce::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                                Eigen::Ref<Eigen::VectorXd> dx) const {
+  for (std::size_t i = 0; i < contacts_.contacts.size(); ++i) {
+    const Contact& contact = contacts_.contacts[i];
+    dx[i] = contact.normal_W.dot(pointDisplacement(from, to, contact.frame, contact.point_W));
+  }
+  return true;
 }
 
 void ContactForce::columns(std::vector<LogColumn>& columns) const {

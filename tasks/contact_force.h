@@ -20,6 +20,8 @@ class ContactForce final : public control::Task {
   explicit ContactForce(const control::BuildContext& context);
   static void registerIn(control::Registry& registry);
 
+  bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                    Eigen::Ref<Eigen::VectorXd> dx) const override;
   void columns(std::vector<control::LogColumn>& columns) const override;
 
  private:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/control/displacement.h"
+
 namespace tactus::tasks {
 
 using namespace control;
@@ -47,6 +49,15 @@ void ContactLimit::doUpdate(const Tick& tick, TickTask& rows) {
     error_ = std::max(error_, contact.force_N);
   }
   excess_.endTick();
+}
+
+bool ContactLimit::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                                Eigen::Ref<Eigen::VectorXd> dx) const {
+  for (std::size_t i = 0; i < contacts_.contacts.size(); ++i) {
+    const Contact& contact = contacts_.contacts[i];
+    dx[i] = contact.normal_W.dot(pointDisplacement(from, to, contact.frame, contact.point_W));
+  }
+  return true;
 }
 
 }  // namespace tactus::tasks

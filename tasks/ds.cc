@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/control/displacement.h"
+
 namespace tactus::tasks {
 
 using namespace control;
@@ -30,9 +32,10 @@ void DynamicalSystem::registerIn(Registry& registry) {
   row.attributes = {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link."},
       {.name = "target", .type = ValueType::reals, .unit = "m", .required = true,
-       .description = "Attractor x*, world axes.", .count = 3, .reached_by = "frame"},
+       .description = "Attractor x*, world axes.", .count = 3, .in_world = InWorld::positions, .reached_by = "frame"},
       {.name = "matrix", .type = ValueType::reals, .unit = "1/s", .default_text = "-1 0 0 0 -1 0 0 0 -1",
-       .description = "A, by rows; its symmetric part must be negative definite.", .count = 9},
+       .description = "A, by rows; its symmetric part must be negative definite.", .count = 9,
+       .in_world = InWorld::matrix},
       {.name = "damping-along", .type = ValueType::real, .unit = "N s/m", .default_text = "130",
        .description = "λ₁, along the field (thesis: 130).", .lower = 0, .lower_open = true},
       {.name = "damping-across", .type = ValueType::real, .unit = "N s/m", .default_text = "130",
@@ -97,6 +100,12 @@ void DynamicalSystem::doUpdate(const Tick& tick, TickTask& rows) {
   tick.robot.pointJacobian(frame_, p_W, rows.jacobian.topRows<3>());
   rows.force.head<3>() = -braking + lambda_along_ * (f_c + beta_R * f_R);
   error_ = (velocity - f).norm();
+}
+
+bool DynamicalSystem::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                                   Eigen::Ref<Eigen::VectorXd> dx) const {
+  dx = frameDisplacement(from, to, frame_).head<3>();
+  return true;
 }
 
 void DynamicalSystem::columns(std::vector<LogColumn>& columns) const { columns.push_back({"tank_J", &tank_}); }

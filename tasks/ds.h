@@ -19,6 +19,8 @@ class DynamicalSystem final : public control::Task {
   explicit DynamicalSystem(const control::BuildContext& context);
   static void registerIn(control::Registry& registry);
 
+  bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                    Eigen::Ref<Eigen::VectorXd> dx) const override;
   void columns(std::vector<control::LogColumn>& columns) const override;
   double tank() const { return tank_; }                            ///< J
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/control/displacement.h"
 #include "tasks/orientation_error.h"
 
 namespace tactus::tasks {
@@ -19,7 +20,7 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link that follows."},
       {.name = "along", .type = ValueType::points, .unit = "m", .required = true,
        .description = "Key positions, world axes, in order; they need not lie on the surface.", .count = 3,
-       .reached_by = "frame"},
+       .in_world = InWorld::positions, .reached_by = "frame"},
       {.name = "on", .type = ValueType::port, .default_text = "touch.held",
        .description = "Contacts whose normals show the surface.", .port_type = "contact-set"},
       {.name = "normal-axis", .type = ValueType::reals, .unit = "1", .default_text = "1 0 0",
@@ -27,7 +28,8 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "forward-axis", .type = ValueType::reals, .unit = "1", .default_text = "0 0 1",
        .description = "Axis of the frame from palm to fingers, perpendicular to normal-axis.", .count = 3},
       {.name = "approach", .type = ValueType::reals, .unit = "1", .default_text = "0 0 -1",
-       .description = "Direction of the first approach, world axes.", .count = 3},
+       .description = "Direction of the first approach, world axes.", .count = 3,
+       .in_world = InWorld::directions},
       {.name = "approach-speed", .type = ValueType::real, .unit = "m/s", .default_text = "0.02",
        .description = "Speed along the last normal while nothing touches.", .lower = 0},
       {.name = "reach", .type = ValueType::real, .unit = "m", .default_text = "0.03",
@@ -49,7 +51,8 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "rotation-damping", .type = ValueType::real, .unit = "N m s/rad", .default_text = "3",
        .description = "d_r.", .lower = 0},
       {.name = "heading", .type = ValueType::reals, .unit = "1",
-       .description = "Direction that the forward axis keeps, world axes; not given: it turns freely.", .count = 3},
+       .description = "Direction that the forward axis keeps, world axes; not given: it turns freely.", .count = 3,
+       .in_world = InWorld::directions},
       {.name = "tilt", .type = ValueType::real, .unit = "rad", .default_text = "0",
        .description = "Lean of the forward axis into the surface.", .lower = -1.5, .upper = 1.5},
       {.name = "normal-filter", .type = ValueType::real, .unit = "s", .default_text = "0.1",
@@ -198,6 +201,12 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   rows.force.segment<3>(3) = moment;
   error_ = distance_;
   key_number_ = key_index_;
+}
+
+bool FollowSurface::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                                 Eigen::Ref<Eigen::VectorXd> dx) const {
+  dx = frameDisplacement(from, to, frame_);
+  return true;
 }
 
 void FollowSurface::columns(std::vector<LogColumn>& columns) const {

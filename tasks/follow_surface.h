@@ -26,6 +26,8 @@ class FollowSurface final : public control::Task {
   explicit FollowSurface(const control::BuildContext& context);
   static void registerIn(control::Registry& registry);
 
+  bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                    Eigen::Ref<Eigen::VectorXd> dx) const override;
   void columns(std::vector<control::LogColumn>& columns) const override;
   void metrics(std::vector<control::Metric>& metrics) const override;
 

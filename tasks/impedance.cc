@@ -1,5 +1,6 @@
 #include "tasks/impedance.h"
 
+#include "framework/control/displacement.h"
 #include "tasks/orientation_error.h"
 
 namespace tactus::tasks {
@@ -16,9 +17,10 @@ void Impedance::registerIn(Registry& registry) {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link."},
       {.name = "position", .type = ValueType::reals, .unit = "m",
        .description = "Reference position of the link's origin, world axes; not given: that of the first tick.",
-       .count = 3, .reached_by = "frame"},
+       .count = 3, .in_world = InWorld::positions, .reached_by = "frame"},
       {.name = "orientation", .type = ValueType::reals, .unit = "rad",
-       .description = "Reference roll, pitch, yaw (fixed axes); not given: that of the first tick.", .count = 3},
+       .description = "Reference roll, pitch, yaw (fixed axes); not given: that of the first tick.", .count = 3,
+       .in_world = InWorld::orientation},
       {.name = "stiffness", .type = ValueType::reals, .unit = "N/m", .default_text = "300 300 300",
        .description = "k_p per axis.", .lower = 0, .count = 3},
       {.name = "damping", .type = ValueType::reals, .unit = "N s/m", .default_text = "300 300 300",
@@ -72,6 +74,12 @@ void Impedance::doUpdate(const Tick& tick, TickTask& rows) {
   rows.force.head<3>() = perAxis(stiffness_, p_e) - perAxis(damping_, velocity.head<3>());
   rows.force.segment<3>(3) = perAxis(turn_stiffness_, turn) - perAxis(turn_damping_, velocity.tail<3>());
   error_ = p_e.norm();
+}
+
+bool Impedance::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                             Eigen::Ref<Eigen::VectorXd> dx) const {
+  dx = frameDisplacement(from, to, frame_);
+  return true;
 }
 
 }  // namespace tactus::tasks

@@ -14,6 +14,9 @@ class Impedance final : public control::Task {
   explicit Impedance(const control::BuildContext& context);
   static void registerIn(control::Registry& registry);
 
+  bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                    Eigen::Ref<Eigen::VectorXd> dx) const override;
+
  private:
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
 

@@ -56,16 +56,18 @@ JointLimits::JointLimits(const BuildContext& context, std::vector<int> joints)
   }
 }
 
+JointLimits::Depth JointLimits::depthOf(int i, double q) const {
+  const double above = q - (upper_[i] - margin_);
+  const double below = (lower_[i] + margin_) - q;
+  return {std::max(above, below), above > below ? 1.0 : -1.0};
+}
+
 void JointLimits::doUpdate(const Tick& tick, TickTask& rows) {
   rows.rows = 0;
   error_ = 0;
   for (const int i : joints_) {
-    const double q = tick.robot.q()[i];
-    const double above = q - (upper_[i] - margin_);
-    const double below = (lower_[i] + margin_) - q;
-    const double depth = std::max(above, below);
+    const auto [depth, towards] = depthOf(i, tick.robot.q()[i]);
     if (depth <= 0) continue;
-    const double towards = above > below ? 1 : -1;
     const double speed = std::max(towards * tick.robot.qd()[i], 0.0);
     rows.jacobian.row(rows.rows).setZero();
     rows.jacobian(rows.rows, i) = towards;
@@ -73,6 +75,16 @@ void JointLimits::doUpdate(const Tick& tick, TickTask& rows) {
     ++rows.rows;
     error_ = std::max(error_, depth);
   }
+}
+
+bool JointLimits::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                               Eigen::Ref<Eigen::VectorXd> dx) const {
+  int row = 0;
+  for (const int i : joints_) {
+    const auto [depth, towards] = depthOf(i, from.q()[i]);
+    if (depth > 0) dx[row++] = towards * (to.q()[i] - from.q()[i]);
+  }
+  return true;
 }
 
 }  // namespace tactus::tasks

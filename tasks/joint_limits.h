@@ -16,9 +16,18 @@ class JointLimits final : public control::Task {
   explicit JointLimits(const control::BuildContext& context);
   static void registerIn(control::Registry& registry);
 
+  bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                    Eigen::Ref<Eigen::VectorXd> dx) const override;
+
  private:
   JointLimits(const control::BuildContext& context, std::vector<int> joints);
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  /// How deep joint i is inside its margin (≤ 0: not at all), and the sign of the limit that is nearer.
+  struct Depth {
+    double depth;
+    double towards;
+  };
+  Depth depthOf(int i, double q) const;
 
   std::vector<int> joints_;
   double margin_, stiffness_, damping_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/control/displacement.h"
+
 namespace tactus::tasks {
 
 using namespace control;
@@ -89,6 +91,17 @@ void MakeContact::doUpdate(const Tick& tick, TickTask& rows) {
   for (std::size_t slot = 0; slot < references_.size(); ++slot) {
     if (!seen_[slot]) references_[slot].active = false;
   }
+}
+
+bool MakeContact::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                               Eigen::Ref<Eigen::VectorXd> dx) const {
+  int row = 0;
+  for (const MissingContact& missing : missing_.points) {
+    if (row == dx.size()) break;                                   // without any contact there are no rows
+    dx.segment<3>(row) = pointDisplacement(from, to, missing.frame, missing.point_W);
+    row += 3;
+  }
+  return true;
 }
 
 }  // namespace tactus::tasks

@@ -19,6 +19,9 @@ class MakeContact final : public control::Task {
   explicit MakeContact(const control::BuildContext& context);
   static void registerIn(control::Registry& registry);
 
+  bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                    Eigen::Ref<Eigen::VectorXd> dx) const override;
+
  private:
   struct Reference {
     bool active = false;

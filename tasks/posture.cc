@@ -133,4 +133,13 @@ void Posture::doUpdate(const Tick& tick, TickTask& rows) {
   }
 }
 
+bool Posture::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                           Eigen::Ref<Eigen::VectorXd> dx) const {
+  int row = 0;
+  for (int k = 0; k < static_cast<int>(joints_.size()); ++k) {
+    if (isFree(k)) dx[row++] = to.q()[joints_[k]] - from.q()[joints_[k]];
+  }
+  return true;
+}
+
 }  // namespace tactus::tasks

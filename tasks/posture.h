@@ -16,6 +16,9 @@ class Posture final : public control::Task {
   explicit Posture(const control::BuildContext& context);
   static void registerIn(control::Registry& registry);
 
+  bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
+                    Eigen::Ref<Eigen::VectorXd> dx) const override;
+
  private:
   Posture(const control::BuildContext& context, std::vector<int> joints);
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;

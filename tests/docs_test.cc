@@ -1,4 +1,4 @@
-// What README.md and docs/ show works as shown: stacks are run, and the plugin of the manual is built by itself.
+// What README.md and docs/ show works as shown: stacks are run, and the plugin that is made by hand is built by itself.
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -161,14 +161,14 @@ TEST(Docs, TheFirstStackIsStable) {
   }
 }
 
-/// The plugin of the manual, made as the manual says from `tactus_dir`, used by `program`.
+/// The plugin that docs/plugins.md makes by hand, made as it says from `tactus_dir`, used by `program`.
 void makeAndUsePlugin(const std::string& tactus_dir, const std::string& program) {
-  const fs::path manual = fs::path(TACTUS_SOURCE_DIR) / "docs/manual.md";
-  const std::string section = "### Write a task plugin";
+  const fs::path page = fs::path(TACTUS_SOURCE_DIR) / "docs/plugins.md";
+  const std::string section = "## By hand: two files";
   const tactus::testing::TemporaryFolder folder;
-  folder.write("wiggle.cc", blocks(manual, "cpp", section).at(0));
-  folder.write("CMakeLists.txt", blocks(manual, "cmake", section).at(0));
-  const std::string stack = folder.write("wiggle.xml", blocks(manual, "xml", section).at(0));
+  folder.write("wiggle.cc", blocks(page, "cpp", section).at(0));
+  folder.write("CMakeLists.txt", blocks(page, "cmake", section).at(0));
+  const std::string stack = folder.write("wiggle.xml", blocks(page, "xml", section).at(0));
   const std::string build = folder.file("build");
   std::string said;
   ASSERT_EQ(shell("cmake -S " + folder.path() + " -B " + build + " -DCMAKE_BUILD_TYPE=Release -DTactus_DIR=" + tactus_dir +
@@ -187,9 +187,9 @@ void makeAndUsePlugin(const std::string& tactus_dir, const std::string& program)
   EXPECT_NE(said.find("amplitude: number; rad; ≥ 0; default 0.1"), std::string::npos) << said;
 }
 
-TEST(Docs, ThePluginOfTheManualIsMadeFromTheBuildTree) { makeAndUsePlugin(TACTUS_BINARY_DIR, kProgram); }
+TEST(Docs, ThePluginMadeByHandIsMadeFromTheBuildTree) { makeAndUsePlugin(TACTUS_BINARY_DIR, kProgram); }
 
-TEST(Docs, ThePluginOfTheManualIsMadeFromAnInstalledTactus) {
+TEST(Docs, ThePluginMadeByHandIsMadeFromAnInstalledTactus) {
   const tactus::testing::TemporaryFolder prefix;
   std::string said;
   ASSERT_EQ(shell("cmake --install " TACTUS_BINARY_DIR " --prefix " + prefix.path(), &said), 0) << said;

@@ -44,7 +44,8 @@ bool startsWith(const std::string& text, const std::string& start) { return text
 
 const std::vector<std::string> kRooms = {"framework/description", "framework/dynamics", "framework/control",
                                          "framework/runtime",     "tasks",              "dsl",
-                                         "plugins",               "sim",                "apps"};
+                                         "conformance",           "plugins",            "sim",
+                                         "apps"};
 
 /// What each room may include of the project, besides itself.
 const std::map<std::string, std::vector<std::string>> kMayUse = {
@@ -54,9 +55,10 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"framework/runtime", {"framework/description", "framework/dynamics", "framework/control"}},
     {"tasks", {"framework/description", "framework/dynamics", "framework/control"}},
     {"dsl", {"framework"}},
+    {"conformance", {"framework", "tasks", "dsl"}},
     {"plugins", {"framework"}},
     {"sim", {"framework/description", "framework/runtime", "framework/control/sensed.h"}},
-    {"apps", {"framework", "tasks", "dsl", "sim"}},
+    {"apps", {"framework", "tasks", "dsl", "sim", "conformance"}},
 };
 
 /// Foreign libraries by the start of the included path, and the rooms that may include them.
@@ -121,7 +123,7 @@ TEST(Rooms, ThePlantIsBuiltWithoutFrameworkDynamics) {
 }
 
 TEST(Rooms, TestsMirrorTheRooms) {
-  for (const std::string room : {"dynamics", "control", "runtime", "tasks", "dsl", "plugins", "sim", "apps"}) {
+  for (const std::string room : {"dynamics", "control", "runtime", "tasks", "dsl", "conformance", "plugins", "sim", "apps"}) {
     EXPECT_TRUE(fs::exists(kRoot / "tests" / room / "CMakeLists.txt")) << room;
   }
 }

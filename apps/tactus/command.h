@@ -50,5 +50,6 @@ void addMigrate(CLI::App& program, Context& context);
 void addGraph(CLI::App& program, Context& context);
 void addSchema(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
+void addNew(CLI::App& program, Context& context);
 
 }  // namespace tactus::app

@@ -85,6 +85,7 @@ int runCommand(int argc, char** argv) {
   addReport(app, context);
   addExplain(app, context);
   addGraph(app, context);
+  addNew(app, context);
   addSchema(app, context);
   addFormat(app, context);
   addMigrate(app, context);

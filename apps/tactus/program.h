@@ -38,6 +38,7 @@ class Program {
 
   control::Registry& registry() { return registry_; }
   runtime::PluginLoader& plugins() { return plugins_; }
+  const runtime::PluginLoader& plugins() const { return plugins_; }
   /// Loads every library of the folders of --plugin and TACTUS_PLUGIN_PATH, which a stack loads by name; returns what
   /// the refused ones are refused for.
   std::vector<std::string> loadFolders();

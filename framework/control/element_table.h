@@ -30,6 +30,15 @@ enum class ValueType {
   file                                                             ///< a file or model name
 };
 
+/// What numbers in world axes are: what becomes of them where the whole world is turned and moved.
+enum class InWorld {
+  no,                                                              ///< gains, lengths, values in a link's axes
+  positions,                                                       ///< groups of 3
+  directions,                                                      ///< groups of 3
+  orientation,                                                     ///< roll, pitch, yaw about fixed axes
+  matrix                                                           ///< 3×3 by rows, from a vector to a vector
+};
+
 struct AttributeRow {
   std::string name;
   ValueType type = ValueType::text;
@@ -41,6 +50,7 @@ struct AttributeRow {
   double upper = std::numeric_limits<double>::infinity();
   bool lower_open = false;
   int count = 0;                               ///< numbers in `reals`, in a group of `points`, behind a `port`; 0 = any
+  InWorld in_world = InWorld::no;
   std::vector<std::string> choices = {};                   ///< for `choice`; for joints, links, ports: extra words
   std::string port_type = {};                                           ///< for `port`
   /// Of places in the world: the `link` attribute whose link is to reach them, for `check --strict`; "" = none.

@@ -172,9 +172,13 @@ std::string formatNumber(double number) {
   return std::string(buffer, result.ptr);
 }
 
-bool ElementValues::has(std::string_view attribute) const { return values_.find(attribute) != values_.end(); }
+bool ElementValues::has(std::string_view attribute) const {
+  if (reads_) reads_->emplace(attribute);
+  return values_.find(attribute) != values_.end();
+}
 
 const Value& ElementValues::value(std::string_view attribute) const {
+  if (reads_) reads_->emplace(attribute);
   const auto found = values_.find(attribute);
   if (found != values_.end()) return found->second;
   const std::string element = row_ ? "<" + row_->name + ">" : "an element without a row";

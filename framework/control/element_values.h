@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,8 @@ class ElementValues {
   void set(const std::string& attribute, Value value) { values_[attribute] = std::move(value); }
   bool has(std::string_view attribute) const;
   const Value& value(std::string_view attribute) const;
+  /// Notes from now on which attributes somebody asks for; `reads` must outlive this and its copies.
+  void watch(std::set<std::string, std::less<>>* reads) { reads_ = reads; }
   const std::map<std::string, Value, std::less<>>& all() const { return values_; }
 
   const std::string& text(std::string_view attribute) const { return value(attribute).text; }
@@ -55,6 +58,7 @@ class ElementValues {
 
  private:
   const ElementRow* row_ = nullptr;
+  std::set<std::string, std::less<>>* reads_ = nullptr;
   std::map<std::string, Value, std::less<>> values_;
 };
 

@@ -24,6 +24,13 @@ class Task {
   void update(const Tick& tick, TickTask& rows) { doUpdate(tick, rows); }
   /// A measure of how far the task is from its goal in this tick (its unit is the task's; 0 = done).
   double error() const { return error_; }
+  /// What J is the derivative of, for checks that hold it against differences: how far each row's quantity moves while
+  /// the robot goes from the state of the last update to another one close by; Δx = J Δq + O(‖Δq‖²), in m or rad, a
+  /// turn as angle-axis in the rows' axes.  False where the task does not tell.
+  virtual bool displacement(const dynamics::DynamicsCache& /*from*/, const dynamics::DynamicsCache& /*to*/,
+                            Eigen::Ref<Eigen::VectorXd> /*dx*/) const {
+    return false;
+  }
   /// More numbers for the log than the error; pointers stay valid.
   virtual void columns(std::vector<LogColumn>&) const {}
   /// Figures of the whole run.

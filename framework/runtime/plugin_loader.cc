@@ -35,13 +35,24 @@ const PluginDescriptor* openLibrary(const std::string& path) {
   if (!fs::exists(path, error)) refuse(path, "no such file");
   if (!fs::is_regular_file(path, error)) refuse(path, "is not a file");
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library) refuse(path, std::string("cannot be loaded: ") + ::dlerror());
+  if (!library) {
+    const std::string reason = ::dlerror();
+    const bool undefined = reason.find("undefined symbol") != std::string::npos;
+    refuse(path, "cannot be loaded: " + reason +
+                     (undefined ? "; link what defines it into the plugin, and rebuild it against this Tactus" : ""));
+  }
   void* symbol = ::dlsym(library, plugin_entry_symbol);
   if (!symbol) {
     refuse(path, std::string("has no function '") + plugin_entry_symbol +
                      "', so it is not a Tactus plugin; write TACTUS_PLUGIN(…) once in its sources");
   }
-  return reinterpret_cast<const PluginDescriptor* (*)()>(symbol)();
+  try {
+    return reinterpret_cast<const PluginDescriptor* (*)()>(symbol)();
+  } catch (const std::exception& error) {
+    refuse(path, std::string("its entry function threw: ") + error.what());
+  } catch (...) {
+    refuse(path, "its entry function threw something that is not a std::exception");
+  }
 }
 
 /// Refuses a descriptor that does not fit this program; says both values.

@@ -1,5 +1,7 @@
 #include "framework/runtime/program_path.h"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
@@ -9,15 +11,34 @@ namespace fs = std::filesystem;
 
 std::string programFolder() { return fs::canonical("/proc/self/exe").parent_path().string(); }
 
+namespace {
+
+/// Where bin, lib and share stand: beside the program, or, of a program from elsewhere such as a plugin's own test,
+/// above this library.
+fs::path root() {
+  const fs::path beside = fs::path(programFolder()).parent_path();
+  if (fs::exists(beside / "share" / "tactus")) return beside;
+  Dl_info library;
+  if (::dladdr(reinterpret_cast<const void*>(&programFolder), &library) == 0) return beside;
+  std::error_code none;
+  for (fs::path folder = fs::canonical(library.dli_fname, none); folder.has_relative_path();) {
+    folder = folder.parent_path();
+    if (fs::exists(folder / "share" / "tactus")) return folder;
+  }
+  return beside;
+}
+
+}  // namespace
+
 std::string shippedPluginFolder() {
-  const fs::path root = fs::path(programFolder()).parent_path();
+  const fs::path root = runtime::root();
   // Debian's multiarch installs below lib/<triplet>; every other tree, the build tree too, below lib.
   const fs::path installed = root / TACTUS_INSTALL_LIBDIR / "tactus" / "plugins";
   return (fs::exists(installed) ? installed : root / "lib" / "tactus" / "plugins").string();
 }
 
 std::string shippedModelFolder() {
-  return (fs::path(programFolder()).parent_path() / "share" / "tactus" / "models").string();
+  return (root() / "share" / "tactus" / "models").string();
 }
 
 std::vector<std::string> foldersFromEnvironment(const char* name) {

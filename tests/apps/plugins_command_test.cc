@@ -87,5 +87,68 @@ TEST(PluginsCommand, AStackFindsPluginsByNameInThePath) {
   EXPECT_EQ(tactus({"check", stack, "--plugin", TEST_PLUGINS}).exit_code, 0);
 }
 
+TEST(PluginsInfo, TellsTheHandshakeAndTheElements) {
+  const Outcome outcome = tactus({"plugins", "info", LAWLESS, "--json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json info = outcome.json();
+  EXPECT_EQ(info["name"], "lawless");
+  EXPECT_EQ(info["abi"], 2);
+  EXPECT_EQ(info["eigen_max_align"], 16);
+  EXPECT_EQ(info["elements"][0]["name"], "lawless.good");
+  const nlohmann::json* target = find(info["elements"][0]["attributes"], "target");
+  ASSERT_TRUE(target);
+  EXPECT_EQ((*target)["unit"], "m");
+  EXPECT_EQ((*target)["default"], "0.6 0.1 0.3");
+
+  const std::string text = tactus({"plugins", "info", LAWLESS}).out;
+  EXPECT_THAT(text, HasSubstr("lawless 1.0.0"));
+  EXPECT_THAT(text, HasSubstr("  target: 3 numbers; m; default 0.6 0.1 0.3\n      World axes.\n"));
+}
+
+TEST(PluginsInfo, KnowsPluginsByName) {
+  EXPECT_THAT(tactus({"plugins", "info", "bump-estimate"}).out, HasSubstr("<bump-estimate>: Finds a round bump"));
+  const Outcome built_in = tactus({"plugins", "info", "built-in"});
+  EXPECT_THAT(built_in.out, HasSubstr("<impedance>: "));
+  EXPECT_THAT(built_in.out, ::testing::Not(HasSubstr("bump-estimate")));
+  const Outcome unknown = tactus({"plugins", "info", "acme"});
+  EXPECT_EQ(unknown.exit_code, 4);
+  EXPECT_THAT(unknown.err, HasSubstr("plugin 'acme' was not found; tried:\n"));
+}
+
+TEST(PluginsCheck, BrokenLawsAreExitOne) {
+  const Outcome outcome =
+      tactus({"plugins", "check", LAWLESS, "--stack", TACTUS_SOURCE_DIR "/tests/conformance/lawless.xml"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.out, HasSubstr("<lawless.jacobian> 'jacobian'\n  broken: jacobian: row 1, joint 'a2': J says "));
+  EXPECT_THAT(outcome.out, HasSubstr("\ndoes not conform\n"));
+}
+
+TEST(PluginsCheck, SaysItAllAsJson) {
+  const Outcome outcome = tactus({"plugins", "check", LAWLESS, "--json"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  const nlohmann::json json = outcome.json();
+  EXPECT_EQ(json["plugin"], "lawless");
+  EXPECT_EQ(json["conforms"], false);
+  int broken = 0;
+  for (const nlohmann::json& finding : json["findings"]) {
+    EXPECT_TRUE(finding.contains("instance") && finding.contains("law") && finding.contains("message"));
+    broken += finding["outcome"] == "broken";
+  }
+  EXPECT_GE(broken, 15);
+}
+
+TEST(PluginsCheck, WhatConformsIsExitZero) {
+  const Outcome outcome = tactus({"plugins", "check", "null-space"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("\nconforms\n"));
+}
+
+TEST(PluginsCheck, WhatCannotBeLoadedIsExitFour) {
+  EXPECT_EQ(tactus({"plugins", "check", library("abi")}).exit_code, 4);
+  EXPECT_EQ(tactus({"plugins", "check", "/nowhere/acme.so"}).exit_code, 4);
+  EXPECT_EQ(tactus({"plugins", "check", TEST_PLUGINS}).exit_code, 4);
+  EXPECT_EQ(tactus({"plugins", "check"}).exit_code, 2);
+}
+
 }  // namespace
 }  // namespace tactus::testing

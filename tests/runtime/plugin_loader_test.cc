@@ -72,6 +72,24 @@ TEST_F(PluginLoaderTest, NoEntrySymbol) {
               AllOf(HasSubstr("has no function 'tactus_plugin'"), HasSubstr("write TACTUS_PLUGIN(")));
 }
 
+TEST_F(PluginLoaderTest, UndefinedSymbol) {
+  EXPECT_THAT(refusalOf(library("undefined")),
+              AllOf(HasSubstr("cannot be loaded: "), HasSubstr("undefined symbol: "),
+                    HasSubstr("functionOfAnotherLibrary"), HasSubstr("; link what defines it into the plugin")));
+}
+
+TEST_F(PluginLoaderTest, ThrowingEntryFunction) {
+  EXPECT_THAT(refusalOf(library("entry_throw")), HasSubstr("its entry function threw: the dongle is missing"));
+  EXPECT_THAT(refusalOf(library("entry_throw_other")),
+              HasSubstr("its entry function threw something that is not a std::exception"));
+}
+
+TEST_F(PluginLoaderTest, DescriptorWithoutTexts) {
+  EXPECT_THAT(refusalOf(library("nullcompiler")), HasSubstr("its descriptor has no compiler"));
+  EXPECT_THAT(refusalOf(library("nullversion")), HasSubstr("its descriptor has no version"));
+  EXPECT_THAT(refusalOf(library("nulllicence")), HasSubstr("its descriptor has no licence"));
+}
+
 TEST_F(PluginLoaderTest, NoDescriptor) {
   EXPECT_THAT(refusalOf(library("nodescriptor")), HasSubstr("its entry function returned no descriptor"));
 }

@@ -57,6 +57,8 @@ extern "C" __attribute__((visibility("default"))) const tactus::runtime::PluginD
                                                       "BSD-3-Clause",
                                                       registerElements};
   const std::string_view wrong = fault;
+  if (wrong == "entry_throw") throw std::runtime_error("the dongle is missing");
+  if (wrong == "entry_throw_other") throw 7;
   if (wrong == "nodescriptor") return nullptr;
   if (wrong == "magic") descriptor.magic = 0x6d616c6963650001;
   if (wrong == "abi") descriptor.abi = 99;
@@ -66,6 +68,9 @@ extern "C" __attribute__((visibility("default"))) const tactus::runtime::PluginD
   if (wrong == "eigen") descriptor.eigen_version = 30309;
   if (wrong == "align") descriptor.eigen_max_align = 64;
   if (wrong == "noname") descriptor.name = "";
+  if (wrong == "nullcompiler") descriptor.compiler = nullptr;
+  if (wrong == "nullversion") descriptor.version = nullptr;
+  if (wrong == "nulllicence") descriptor.licence = nullptr;
   if (wrong == "noregister") descriptor.register_elements = nullptr;
   if (wrong == "duplicate" || wrong == "halfway") descriptor.name = fault;
   return &descriptor;

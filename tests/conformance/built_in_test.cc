@@ -1,0 +1,51 @@
+// Every built-in task and signal, and every shipped plugin, keeps the laws.
+//
+// Strategy: one stack holds instances that use every attribute; a test fails when a type has none.
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "conformance/bench.h"
+#include "conformance/conformance.h"
+
+namespace tactus::conformance {
+namespace {
+
+const std::string kStack = TACTUS_SOURCE_DIR "/tests/conformance/every_element.xml";
+
+std::vector<std::string> tasksAndSignals(const control::Registry& registry) {
+  std::vector<std::string> names = registry.names(control::ElementKind::task);
+  for (const std::string& name : registry.names(control::ElementKind::signal)) names.push_back(name);
+  return names;
+}
+
+TEST(BuiltIns, KeepTheLaws) {
+  Workshop workshop;
+  const dsl::Stack stack = workshop.read(kStack);
+  const Report report = checkElements(workshop.registry(), tasksAndSignals(workshop.registry()), &stack);
+  EXPECT_TRUE(report.conforms()) << report.text();
+  std::set<std::string> not_asked;
+  for (const Finding& finding : report.findings)
+    if (finding.outcome == Outcome::not_asked) not_asked.insert(finding.law);
+  EXPECT_EQ(not_asked, std::set<std::string>{"bias"}) << report.text();
+}
+
+TEST(BuiltIns, HaveAnInstanceInTheStackOfThisTest) {
+  Workshop workshop;
+  const dsl::Stack stack = workshop.read(kStack);
+  std::set<std::string> there;
+  for (const auto& signal : stack.signals) there.insert(signal.values.row().name);
+  for (const auto& level : stack.levels)
+    for (const auto& task : level.tasks) there.insert(task.values.row().name);
+  for (const std::string& name : tasksAndSignals(workshop.registry())) EXPECT_TRUE(there.contains(name)) << name;
+}
+
+TEST(BackEnds, KeepTheLaws) {
+  Workshop workshop;
+  const Report report = checkElements(workshop.registry(), workshop.registry().names(control::ElementKind::back_end));
+  EXPECT_TRUE(report.conforms()) << report.text();
+}
+
+}  // namespace
+}  // namespace tactus::conformance
