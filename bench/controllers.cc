@@ -108,6 +108,10 @@ Figure measureTick(const TickCase& tick_case, const BackEndChoice& choice, int s
 
 // ---- Solves alone, from assembled matrices.
 
+std::string aloneName(const std::string& what, int contacts) {
+  return what + " alone, " + std::to_string(contacts) + " contacts";
+}
+
 Eigen::MatrixXd gaussian(std::mt19937& random, int rows, int columns) {
   std::normal_distribution<> normal;
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
@@ -174,7 +178,7 @@ Figure measureWeightedSolve(int contacts, double target_us, int samples) {
   const std::vector<qp::Programme> programmes = weightedProgrammes(contacts);
   const qp::Programme& shape = programmes[0];
   qp::ActiveSet solver(shape.variables, shape.dense, 0, shape.rows);
-  Figure figure{"weighted QP alone, " + std::to_string(contacts) + " contacts", "active-set", {}, 0, 0, {}, target_us};
+  Figure figure{aloneName("weighted QP", contacts), "active-set", {}, 0, 0, {}, target_us};
   std::vector<int> start;
   start.reserve(2 * shape.rows);
   int calls = 0;
@@ -223,7 +227,7 @@ Figure measureHierarchySolve(int contacts, double target_us, int samples) {
   hqp::Hqp back_end;
   control::TickSolution solution;
   back_end.prepare(problems[0], solution);
-  Figure figure{"hierarchy alone, " + std::to_string(contacts) + " contacts", "hqp", {}, 0, 0, {}, target_us};
+  Figure figure{aloneName("hierarchy", contacts), "hqp", {}, 0, 0, {}, target_us};
   int calls = 0;
   figure.timing = measure(
       [&](int k) {
@@ -317,10 +321,11 @@ int run(const Options& options) {
   constexpr double weighted_targets[] = {1.35, 1.75, 5.7, 9.7}, hierarchy_targets[] = {9, 31, 36, 75};
   constexpr int contacts[] = {0, 3, 6, 12};
   for (int i = 0; i < 4; ++i)
-    if (wanted("weighted QP alone", "active-set"))
+    if (wanted(aloneName("weighted QP", contacts[i]), "active-set"))
       add(measureWeightedSolve(contacts[i], weighted_targets[i], samples));
   for (int i = 0; i < 4; ++i)
-    if (wanted("hierarchy alone", "hqp")) add(measureHierarchySolve(contacts[i], hierarchy_targets[i], samples));
+    if (wanted(aloneName("hierarchy", contacts[i]), "hqp"))
+      add(measureHierarchySolve(contacts[i], hierarchy_targets[i], samples));
   if (options.json) {
     nlohmann::ordered_json all;
     if (mujoco) all["mujoco_tick_us"] = mujoco->median_us;
