@@ -197,8 +197,19 @@ Figure measureWeightedSolve(int contacts, double target_us, int samples) {
   return figure;
 }
 
-/// Torque limits > contacts > hand > posture, 7 to 15 limits at their bounds.
-Figure measureHierarchySolve(int contacts, double target_us, int samples) {
+struct HierarchyCase {
+  int contacts;
+  double hand, posture;                                            ///< amplitudes of the accelerations asked for
+  double target_us;
+};
+
+/// Amplitudes that bring 7 to 15 limits to their bounds: with fewer directions left for the posture it has to ask for
+/// more, and beside 12 contacts the hand too.
+constexpr HierarchyCase hierarchy_cases[] = {{0, 30, 80, 9}, {3, 30, 100, 31}, {6, 40, 300, 36}, {12, 500, 250, 75}};
+
+/// Torque limits > contacts > hand > posture.
+Figure measureHierarchySolve(const HierarchyCase& hierarchy, int samples) {
+  const int contacts = hierarchy.contacts;
   const Sequence sequence(contacts, 2);
   constexpr int n = Sequence::dof;
   std::vector<control::TickProblem> problems;
@@ -212,9 +223,10 @@ Figure measureHierarchySolve(int contacts, double target_us, int samples) {
     touch.jacobian = sequence.contactRows(k);
     touch.force.setConstant(0.5);
     hand.jacobian = sequence.handRows(k);
-    for (int i = 0; i < 6; ++i) hand.acceleration[i] = 30 * sequence.wave(k, i + 3);
+    for (int i = 0; i < 6; ++i) hand.acceleration[i] = hierarchy.hand * sequence.wave(k, i + 3);
     posture.jacobian.setIdentity();
-    for (int i = 0; i < n; ++i) posture.acceleration[i] = 45 * sequence.wave(k, i + 9) + 20 * sequence.wave(3 * k, i);
+    for (int i = 0; i < n; ++i)
+      posture.acceleration[i] = hierarchy.posture * (sequence.wave(k, i + 9) + 0.45 * sequence.wave(3 * k, i));
     hand.has_acceleration = posture.has_acceleration = true;
     int priority = 1;
     for (control::TickTask* task : {&touch, &hand, &posture}) {
@@ -227,7 +239,7 @@ Figure measureHierarchySolve(int contacts, double target_us, int samples) {
   hqp::Hqp back_end;
   control::TickSolution solution;
   back_end.prepare(problems[0], solution);
-  Figure figure{aloneName("hierarchy", contacts), "hqp", {}, 0, 0, {}, target_us};
+  Figure figure{aloneName("hierarchy", contacts), "hqp", {}, 0, 0, {}, hierarchy.target_us};
   int calls = 0;
   figure.timing = measure(
       [&](int k) {
@@ -318,14 +330,13 @@ int run(const Options& options) {
       if (wanted(tick_case->name(), back_end.label)) add(measureTick(*tick_case, back_end, samples / 20));
   }
   if (!options.json) std::printf("solve alone; steps: rows at their bounds\n");
-  constexpr double weighted_targets[] = {1.35, 1.75, 5.7, 9.7}, hierarchy_targets[] = {9, 31, 36, 75};
+  constexpr double weighted_targets[] = {1.35, 1.75, 5.7, 9.7};
   constexpr int contacts[] = {0, 3, 6, 12};
   for (int i = 0; i < 4; ++i)
     if (wanted(aloneName("weighted QP", contacts[i]), "active-set"))
       add(measureWeightedSolve(contacts[i], weighted_targets[i], samples));
-  for (int i = 0; i < 4; ++i)
-    if (wanted(aloneName("hierarchy", contacts[i]), "hqp"))
-      add(measureHierarchySolve(contacts[i], hierarchy_targets[i], samples));
+  for (const HierarchyCase& hierarchy : hierarchy_cases)
+    if (wanted(aloneName("hierarchy", hierarchy.contacts), "hqp")) add(measureHierarchySolve(hierarchy, samples));
   if (options.json) {
     nlohmann::ordered_json all;
     if (mujoco) all["mujoco_tick_us"] = mujoco->median_us;
