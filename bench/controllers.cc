@@ -237,6 +237,7 @@ Figure measureHierarchySolve(const HierarchyCase& hierarchy, int samples) {
     problems.push_back(problem);
   }
   hqp::Hqp back_end;
+  back_end.setReportsRanks(false);                                 // as in whole ticks
   control::TickSolution solution;
   back_end.prepare(problems[0], solution);
   Figure figure{aloneName("hierarchy", contacts), "hqp", {}, 0, 0, {}, hierarchy.target_us};

@@ -45,13 +45,13 @@ bool WhitenedProblem::update(const TickProblem& problem) {
     if (forces_[j] != 0) own_torques_.col(origins_[j].level) += forces_[j] * columns_.col(j);
   auto A = columns_.leftCols(count_);
   auto norms = norms_.head(count_);
-  auto inverses = products_.head(count_);
-  inverses.setZero();
-  for (int k = 0; k < dof_; ++k) inverses += A.row(k).cwiseAbs2();
-  norms = inverses.transpose().cwiseSqrt();
+  auto lengths = products_.head(count_);
+  lengths.setZero();
+  for (int k = 0; k < dof_; ++k) lengths += A.row(k).cwiseAbs2();
+  norms = lengths.transpose().cwiseSqrt();
   if (!norms.allFinite()) return false;
-  inverses = (norms.array() > 0).select(norms.array().inverse(), 1.0).transpose();
-  for (int k = 0; k < dof_; ++k) A.row(k).array() *= inverses.array();
+  lengths = (norms.array() > 0).select(norms, 1.0).transpose();
+  for (int k = 0; k < dof_; ++k) A.row(k).array() /= lengths.array();
   return own_torques_.allFinite() && massFactor().diagonal().allFinite();
 }
 

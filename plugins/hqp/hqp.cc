@@ -23,15 +23,14 @@ using control::TickTask;
 namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-/// Price of a free direction over that of a level's own error: so small that it decides nothing but which rows are at
-/// their bounds.
+/// Price of a free direction over that of a level's own error, or of a limit's violation: so small that it decides
+/// nothing but which rows are at their bounds.
 constexpr double free_prices[] = {1e-6, 1e-3};                     // the second where rounding takes the first
 /// Share of a level's error, relative to the size of its point, from which a row at its bound is said to cost it.
 constexpr double costly_share = 1e-8;
 constexpr double kept = 1e-12;                                     // violation, relative to the point, that is rounding
 constexpr double room = 1e-12;                                     // for rounding, between a point and its bounds
 constexpr double missed = 1e-9;                                    // violation, relative, of a point that is none
-constexpr double slack_price = 1e-6;                               // of a free direction over a limit's violation
 constexpr double independence = 1e-13;                             // rows differ by as little as the price leaves of them
 constexpr int rows_per_friction_contact = 3;
 
@@ -46,42 +45,51 @@ bool exceedsItsBounds(const TickTask& task) {
 class Hqp::Solver {
  public:
   Solver(const TickProblem& shape, const HqpOptions& options);
-  void solve(const TickProblem& problem, const control::Deadline& deadline, TickSolution& solution);
+  void solve(const TickProblem& problem, const control::Deadline& deadline, bool with_ranks, TickSolution& solution);
 
   control::WarmStart warmStart() const;
   void setWarmStart(const control::WarmStart& start);
 
  private:
   enum class Outcome { solved, impossible, late };
-  enum Pass { priced, exact, passes };                             // of a level; each has its own warm start
+  enum Rows { costly, met, kinds };                                // at their bounds: costing the level, or not
 
   const TickProblem& withinForceBounds(const TickProblem& problem);
   void makeLimits(const TickProblem& problem);
   bool enterLimits(const TickProblem& problem);
+  bool leastViolation(double of_free_directions);
 
   Outcome solveLevel(const TickProblem& problem, int level);
+  Outcome solveAsLastTime(const TickProblem& problem, int level);
+  bool rowsCost(const TickProblem& problem, int level);
   void openStage(const TickProblem& problem, int level);
   Outcome price(int level, double of_free_directions);
   Outcome settle(const TickProblem& problem, int level);
+  Outcome enterBounds(int level, double tolerated);
   void holdLevel(int level, TickSolution& solution);
 
   auto open() { return rows_.leftCols(open_rows_); }
+  std::vector<int>& start(int level, Rows kind) { return starts_[level * kinds + kind]; }
+  int signedRow(int i) const { return least_distance_.side(i) * (behind_[least_distance_.active(i)] + 1); }
   int stages() const { return chain_.stages(); }
   void restoreChain(int count);
-  void holdAtBounds(const std::vector<int>& signed_rows);
-  void followBase();
+  void holdAtBounds(std::vector<int>& signed_rows);
+  bool isBounded(int signed_row) const;
   bool leavesABound(double share = kept);
   void gatherRows(int first, double of_free_directions = 0);
-  Outcome nearest(int level, Pass pass, int first);
+  void guess(const std::vector<int>& signed_rows);
+  Outcome nearest(int first);
   void toPoint();
   void reportActive(TickSolution& solution);
 
   int dof_;
+  control::LevelRanks ranks_;
   control::WhitenedProblem whitened_;
   TickProblem bounded_;
   PriorityFactor chain_;
   int open_rows_ = 0;
   RowMajorMatrix rows_;                                            // of the open stage, as `hold` left them
+  RowMajorMatrix held_rows_;                                       // of the stage of bounds, likewise
   Eigen::VectorXd target_;
   Eigen::VectorXd weights_;                                        // norms of the rows
   RowMajorMatrix column_;                                          // coordinates of a point, dof × 1
@@ -98,10 +106,12 @@ class Hqp::Solver {
   RowMajorMatrix constraints_;                                     // unit rows, dof × count
   RowMajorMatrix advanced_;                                        // taken through the chain without its open stage
   RowMajorMatrix turned_;                                          // and through the open stage
+  bool have_turned_ = false;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
-  Eigen::RowVectorXd at_base_;                                     // c base
+  Eigen::RowVectorXd at_base_;                                     // c base, when it was last asked for
   Eigen::RowVectorXd products_;                                    // c y at the point that was looked at last
+  Eigen::VectorXd multipliers_;
 
   LeastDistance least_distance_;
   RowMajorMatrix small_;                                           // rows of a least-distance programme
@@ -114,20 +124,25 @@ class Hqp::Solver {
   Eigen::VectorXi place_;                                          // and back, -1 for none
   std::vector<int> costly_;                                        // ±(constraint + 1) that cost the level something
   std::vector<int> active_;                                        // all at their bounds in the priced point
-  std::vector<std::vector<int>> starts_;                           // the same, of the last tick, by level and pass
+  std::vector<int> order_;
+  std::vector<std::vector<int>> starts_;                           // the same, of the last tick, by level and kind
   int steps_ = 0;
   int step_limit_ = 0;
   LeastDistance::TimePoint end_;
   int released_ = 0;
   bool relaxed_ = false;
+  bool holds_bounds_ = false;
+  bool with_ranks_ = true;
 };
 
 Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
     : dof_(shape.dof),
+      ranks_(shape, options.rank),
       whitened_(shape),
       bounded_(shape),
       chain_(shape.dof, shape.rowCapacity() + shape.dof, 2 * static_cast<int>(shape.levels.size()) + 2, options.rank),
       rows_(shape.dof, shape.rowCapacity() + shape.dof),
+      held_rows_(shape.dof, shape.dof),
       target_(rows_.cols()),
       weights_(rows_.cols()),
       column_(shape.dof, 1),
@@ -143,6 +158,7 @@ Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
       upper_(constraints_.cols()),
       at_base_(constraints_.cols()),
       products_(constraints_.cols()),
+      multipliers_(shape.dof),
       least_distance_(2 * shape.dof, static_cast<int>(constraints_.cols()), independence),
       small_(2 * shape.dof, constraints_.cols()),
       small_lower_(constraints_.cols()),
@@ -151,13 +167,15 @@ Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
       lengths_(constraints_.cols()),
       behind_(constraints_.cols()),
       place_(constraints_.cols()),
-      starts_(shape.levels.size() * passes) {
+      starts_(shape.levels.size() * kinds) {
   costly_.reserve(2 * shape.dof);
   active_.reserve(2 * shape.dof);
+  order_.reserve(2 * shape.dof);
   for (std::vector<int>& start : starts_) start.reserve(2 * shape.dof);
 }
 
-void Hqp::Solver::solve(const TickProblem& given, const control::Deadline& deadline, TickSolution& solution) {
+void Hqp::Solver::solve(const TickProblem& given, const control::Deadline& deadline, bool with_ranks,
+                        TickSolution& solution) {
   control::resetSolution(given, solution);
   const TickProblem& problem = withinForceBounds(given);
   if (!whitened_.update(problem)) {
@@ -172,7 +190,8 @@ void Hqp::Solver::solve(const TickProblem& given, const control::Deadline& deadl
   y_.setZero();
   base_.setZero();
   bool entered = !problem.torque_limits;
-  relaxed_ = false;
+  relaxed_ = holds_bounds_ = false;
+  with_ranks_ = with_ranks;
   if (problem.torque_limits) makeLimits(problem);
   for (int i = 0; i < whitened_.levelCount() && solution.status != Status::failed; ++i) {
     const int limits = problem.torque_limits ? problem.torque_limits->priority.value_or(problem.levels[0].priority) : 0;
@@ -206,6 +225,8 @@ void Hqp::Solver::solve(const TickProblem& given, const control::Deadline& deadl
       whitened_.massFactor().triangularView<Eigen::Lower>().solveInPlace(y_);
     }
   }
+  // With bounds held in the chain it does not say what the levels' rows alone could.
+  if (with_ranks_ && holds_bounds_) ranks_.report(whitened_, solution);
   whitened_.reportResiduals(problem, y_, solution);
   solution.iterations = steps_;
   solution.rows_released = released_;
@@ -244,7 +265,6 @@ void Hqp::Solver::makeLimits(const TickProblem& problem) {
   lower_.head(count_).setConstant(-no_bound);
   upper_.head(count_).setConstant(no_bound);
   advanced_.leftCols(count_) = constraints_.leftCols(count_);
-  at_base_.head(count_).setZero();
 }
 
 // From here on the limits bind.  False when what is held above does not fit: then they are relaxed by the least squares
@@ -260,30 +280,10 @@ bool Hqp::Solver::enterLimits(const TickProblem& problem) {
     fits &= product >= lower_[i] && product <= upper_[i];
   }
   if (fits) return true;
-  // A slack for each limit, beside the free directions at their price.
-  const int first = chain_.held();
-  const int free = dof_ - first;
-  const int size = free + limit_count_;
-  auto rows = small_.topLeftCorner(size, count_);
-  rows.setZero();
-  rows.topRows(free) = advanced_.block(first, 0, free, count_) / slack_price;
-  rows.bottomRows(limit_count_).diagonal().setOnes();
-  for (int j = 0; j < count_; ++j) {
-    const double length = rows.col(j).norm();
-    rows.col(j) /= length > 0 ? length : 1;
-    small_lower_[j] = (lower_[j] - at_base_[j]) / (length > 0 ? length : 1);
-    small_upper_[j] = (upper_[j] - at_base_[j]) / (length > 0 ? length : 1);
-  }
-  centre_.head(size).setZero();
-  least_distance_.forgetGuess();
-  least_distance_.limit(std::numeric_limits<int>::max());          // bounded by itself
-  const auto outcome =
-      least_distance_.solve(rows, small_lower_.head(count_), small_upper_.head(count_), centre_.head(size));
-  if (outcome != LeastDistance::Outcome::solved) return false;
-  fits = true;
-  const auto x = least_distance_.x();
+  const bool found = std::any_of(std::begin(free_prices), std::end(free_prices), [&](double p) { return leastViolation(p); });
+  fits = found;
   for (int i = 0; i < limit_count_; ++i) {
-    const double reached = at_base_[i] + advanced_.col(i).tail(free).dot(x.head(free)) / slack_price;
+    const double reached = found ? products_[i] : constraints_.col(i).dot(y_);
     const double tolerance = costly_share * (1 + std::abs(reached));
     fits &= reached >= lower_[i] - tolerance && reached <= upper_[i] + tolerance;
     lower_[i] = std::min(lower_[i], reached - tolerance);
@@ -292,51 +292,141 @@ bool Hqp::Solver::enterLimits(const TickProblem& problem) {
   return fits;
 }
 
+// A slack for each limit, beside the free directions at their price; what the limits then reach is in `products_`.
+bool Hqp::Solver::leastViolation(double of_free_directions) {
+  const int first = chain_.held();
+  const int free = dof_ - first;
+  const int size = free + limit_count_;
+  at_base_.head(count_).noalias() = base_.transpose() * constraints_.leftCols(count_);
+  auto rows = small_.topLeftCorner(size, count_);
+  rows.setZero();
+  rows.topRows(free) = advanced_.block(first, 0, free, count_) / of_free_directions;
+  rows.bottomRows(limit_count_).diagonal().setOnes();
+  for (int j = 0; j < count_; ++j) {
+    // What nothing free can change is as the levels above left it.
+    if (j >= limit_count_ && advanced_.col(j).tail(free).norm() <= control::RankOptions{}.rank_tolerance) {
+      rows.col(j).setZero();
+      small_lower_[j] = -no_bound;
+      small_upper_[j] = no_bound;
+      continue;
+    }
+    const double length = rows.col(j).norm();
+    rows.col(j) /= length;
+    small_lower_[j] = (lower_[j] - at_base_[j]) / length;
+    small_upper_[j] = (upper_[j] - at_base_[j]) / length;
+  }
+  centre_.head(size).setZero();
+  least_distance_.limit(std::numeric_limits<int>::max());          // bounded by itself
+  const auto outcome =
+      least_distance_.solve(rows, small_lower_.head(count_), small_upper_.head(count_), centre_.head(size));
+  const auto x = least_distance_.x().head(free) / of_free_directions;
+  products_.head(limit_count_) = at_base_.head(limit_count_);
+  for (int i = 0; i < limit_count_; ++i) products_[i] += advanced_.col(i).tail(free).dot(x);
+  return outcome == LeastDistance::Outcome::solved;
+}
+
 Hqp::Solver::Outcome Hqp::Solver::solveLevel(const TickProblem& problem, int level) {
   stages_above_ = stages();
   above_ = base_;
-  openStage(problem, level);
-  costly_.clear();
-  active_.clear();
-  if (leavesABound()) {
-    const int free = dof_ - chain_.held();
-    Outcome outcome = Outcome::impossible;
-    for (const double of_free_directions : free_prices) {
-      outcome = price(level, of_free_directions);
-      if (outcome != Outcome::impossible) break;
-    }
-    if (outcome != Outcome::solved) return outcome;
-    // With no direction free there was no price.
-    if (free > 0) return settle(problem, level);
-  } else {
-    starts_[level * passes + priced].clear();
-    starts_[level * passes + exact].clear();
+  if (!start(level, costly).empty() || !start(level, met).empty()) {
+    const Outcome outcome = solveAsLastTime(problem, level);
+    if (outcome != Outcome::impossible) return outcome;
+    restoreChain(stages_above_);
   }
-  toPoint();
-  return Outcome::solved;
+  openStage(problem, level);
+  if (!leavesABound()) {
+    start(level, costly).clear();
+    start(level, met).clear();
+    return Outcome::solved;
+  }
+  Outcome outcome = Outcome::impossible;
+  for (const double of_free_directions : free_prices) {
+    outcome = price(level, of_free_directions);
+    if (outcome != Outcome::impossible) break;
+  }
+  return outcome == Outcome::solved ? settle(problem, level) : outcome;
 }
 
-// Decomposes what the level asks for, in what the chain leaves; z_ comes nearest to it when nothing else is looked at.
+// With the same rows costing the level as in the last tick.  Its optimum if nothing leaves a bound and each of them does
+// cost it something; then nothing is to be priced.
+Hqp::Solver::Outcome Hqp::Solver::solveAsLastTime(const TickProblem& problem, int level) {
+  std::vector<int>& held = start(level, costly);
+  const bool fits = static_cast<int>(held.size()) <= dof_ - chain_.held();
+  if (!fits || !std::all_of(held.begin(), held.end(), [this](int row) { return isBounded(row); })) held.clear();
+  if (!held.empty()) holdAtBounds(held);
+  openStage(problem, level);
+  const Outcome outcome = enterBounds(level, kept);
+  if (outcome != Outcome::solved || held.empty() || rowsCost(problem, level)) return outcome;
+  return Outcome::impossible;
+}
+
+bool Hqp::Solver::isBounded(int signed_row) const {
+  const int j = std::abs(signed_row) - 1;
+  return j < count_ && std::isfinite(signed_row > 0 ? upper_[j] : lower_[j]);
+}
+
+// Whether the multipliers of the level's rows at their bounds have the right sign and count: Σ μ c is what the gradient
+// of its error leaves in their stage.
+bool Hqp::Solver::rowsCost(const TickProblem& problem, int level) {
+  const PriorityFactor::Stage& bounds = chain_.stage(stages_above_);
+  const PriorityFactor::Stage& own = chain_.lastStage();
+  if (bounds.deficient || own.rank > own.held || open_rows_ == 0) return false;
+  whitened_.objectiveLeft(problem, level, y_, target_);
+  auto left = target_.head(open_rows_).array();
+  const auto weights = weights_.head(open_rows_).array();
+  left *= (weights / weights.maxCoeff()).square();
+  auto multipliers = multipliers_.head(bounds.held);
+  multipliers.noalias() = rows_.block(bounds.first, 0, bounds.held, open_rows_) * target_.head(open_rows_);
+  const auto triangle = held_rows_.block(bounds.first, 0, bounds.held, bounds.held);
+  triangle.triangularView<Eigen::Upper>().solveInPlace(multipliers);
+  const std::vector<int>& held = start(level, costly);
+  const double least = costly_share * (z_.norm() + base_.norm());
+  for (int i = 0; i < bounds.held; ++i) {
+    const double multiplier = held[i] > 0 ? multipliers[i] : -multipliers[i];
+    if (!(multiplier * triangle.col(i).head(i + 1).norm() > least)) return false;
+  }
+  return true;
+}
+
+// Decomposes what the level asks for, in what the chain leaves, and comes nearest to it when nothing else is looked at.
 void Hqp::Solver::openStage(const TickProblem& problem, int level) {
   open_rows_ = whitened_.gatherObjective(problem, level, base_, rows_, target_, weights_);
   chain_.advance(open());
   chain_.hold(open());
   chain_.leastSquares(open(), target_.head(open_rows_), weights_.head(open_rows_), z_);
-  if (count_ == 0) return;
-  turned_.leftCols(count_) = advanced_.leftCols(count_);
-  chain_.turn(stages() - 1, turned_.leftCols(count_));
+  toPoint();
+  have_turned_ = false;
 }
 
 bool Hqp::Solver::leavesABound(double share) {
   if (count_ == 0) return false;
   auto products = products_.head(count_);
-  products = at_base_.head(count_);
-  for (int k = 0; k < dof_; ++k)
-    if (z_[k] != 0) products += z_[k] * turned_.row(k).head(count_);
+  products.noalias() = y_.transpose() * constraints_.leftCols(count_);
   const double tolerance = share * (z_.norm() + base_.norm());
   for (int j = 0; j < count_; ++j)
     if (products[j] > upper_[j] + tolerance || products[j] < lower_[j] - tolerance) return true;
   return false;
+}
+
+// The nearest point within the bounds that the open stage's free directions can reach.
+Hqp::Solver::Outcome Hqp::Solver::enterBounds(int level, double tolerated) {
+  std::vector<int>& met_rows = start(level, met);
+  if (!leavesABound()) {
+    met_rows.clear();
+    return Outcome::solved;
+  }
+  const int first = chain_.held();
+  if (first < dof_) {
+    gatherRows(first);
+    guess(met_rows);
+    const Outcome outcome = nearest(first);
+    if (outcome != Outcome::solved) return outcome;
+    z_.tail(dof_ - first) += least_distance_.x();
+    toPoint();
+    met_rows.clear();
+    for (int i = 0; i < least_distance_.activeCount(); ++i) met_rows.push_back(signedRow(i));
+  }
+  return leavesABound(tolerated) ? Outcome::impossible : Outcome::solved;
 }
 
 // Constraints in the coordinates from `first` on, about the point z_, as unit rows; with a price in the metric of the
@@ -344,6 +434,11 @@ bool Hqp::Solver::leavesABound(double share) {
 // decide already fade out.
 void Hqp::Solver::gatherRows(int first, double of_free_directions) {
   const int free = dof_ - first;
+  if (!have_turned_) {
+    turned_.leftCols(count_) = advanced_.leftCols(count_);
+    chain_.turn(stages() - 1, turned_.leftCols(count_));
+    have_turned_ = true;
+  }
   auto rows = small_.topLeftCorner(dof_, count_);
   rows = turned_.leftCols(count_);
   if (of_free_directions > 0) {
@@ -371,25 +466,21 @@ void Hqp::Solver::gatherRows(int first, double of_free_directions) {
   centre_.head(free).setZero();
 }
 
-Hqp::Solver::Outcome Hqp::Solver::nearest(int level, Pass pass, int first) {
-  const int free = dof_ - first;
-  std::vector<int>& start = starts_[level * passes + pass];
-  least_distance_.forgetGuess();
-  for (const int row : start) {
+void Hqp::Solver::guess(const std::vector<int>& signed_rows) {
+  for (const int row : signed_rows) {
     const int constraint = std::abs(row) - 1;
     if (constraint < count_ && place_[constraint] >= 0) least_distance_.guess(place_[constraint], row);
   }
+}
+
+Hqp::Solver::Outcome Hqp::Solver::nearest(int first) {
+  const int free = dof_ - first;
   least_distance_.limit(step_limit_ - steps_, end_);
   const auto outcome = least_distance_.solve(small_.topLeftCorner(free, small_count_), small_lower_.head(small_count_),
                                              small_upper_.head(small_count_), centre_.head(free));
   steps_ += least_distance_.steps();
   released_ += least_distance_.releasedCount();
-  start.clear();
-  if (outcome == LeastDistance::Outcome::solved) {
-    for (int i = 0; i < least_distance_.activeCount(); ++i)
-      start.push_back(least_distance_.side(i) * (behind_[least_distance_.active(i)] + 1));
-    return Outcome::solved;
-  }
+  if (outcome == LeastDistance::Outcome::solved) return Outcome::solved;
   return least_distance_.late() ? Outcome::late : Outcome::impossible;
 }
 
@@ -399,7 +490,9 @@ Hqp::Solver::Outcome Hqp::Solver::price(int level, double of_free_directions) {
   const int held = chain_.held();
   const int first = held - chain_.lastStage().held;
   gatherRows(first, of_free_directions);
-  const Outcome outcome = nearest(level, priced, first);
+  guess(start(level, costly));
+  guess(start(level, met));
+  const Outcome outcome = nearest(first);
   if (outcome != Outcome::solved) return outcome;
   const auto u = least_distance_.x();
   column_.setZero();
@@ -408,12 +501,13 @@ Hqp::Solver::Outcome Hqp::Solver::price(int level, double of_free_directions) {
   z_ += column_.col(0);
   z_.tail(dof_ - held) += (1 / of_free_directions - 1) * column_.col(0).tail(dof_ - held);
   const double size = z_.norm() + base_.norm();
+  costly_.clear();
+  active_.clear();
   for (int i = 0; i < least_distance_.activeCount(); ++i) {
     const int row = least_distance_.active(i);
-    const int signed_row = least_distance_.side(i) * (behind_[row] + 1);
-    active_.push_back(signed_row);
+    active_.push_back(signedRow(i));
     const double cost = std::abs(least_distance_.multipliers()[row]) / lengths_[row];
-    if (cost > costly_share * size) costly_.push_back(signed_row);
+    if (cost > costly_share * size) costly_.push_back(active_.back());
   }
   return Outcome::solved;
 }
@@ -421,31 +515,21 @@ Hqp::Solver::Outcome Hqp::Solver::price(int level, double of_free_directions) {
 // The point itself: rows that cost the level are equalities, its own rows then come as near as they can, and of what is
 // left the shortest is taken.
 Hqp::Solver::Outcome Hqp::Solver::settle(const TickProblem& problem, int level) {
+  start(level, costly) = costly_;
   toPoint();
   priced_ = y_;
-  for (const std::vector<int>* rows : {&costly_, &active_}) {      // all of them, should the cost have been misjudged
+  for (std::vector<int>* rows : {&costly_, &active_}) {            // all of them, should the cost have been misjudged
     if (rows == &active_ && costly_.size() == active_.size()) break;
     restoreChain(stages_above_);
     if (!rows->empty()) holdAtBounds(*rows);
     openStage(problem, level);
-    Outcome outcome = Outcome::solved;
-    if (leavesABound()) {
-      const int first = chain_.held();
-      gatherRows(first);
-      outcome = nearest(level, exact, first);
-      if (outcome == Outcome::solved) z_.tail(dof_ - first) += least_distance_.x();
-    } else {
-      starts_[level * passes + exact].clear();
-    }
-    if (outcome == Outcome::late) return outcome;
-    if (outcome == Outcome::solved && !leavesABound(missed)) {
-      toPoint();
-      return outcome;
-    }
+    const Outcome outcome = enterBounds(level, missed);
+    if (outcome != Outcome::impossible) return outcome;
   }
   restoreChain(stages_above_);
   openStage(problem, level);
   y_ = priced_;
+  start(level, met) = active_;
   return Outcome::solved;
 }
 
@@ -457,32 +541,28 @@ void Hqp::Solver::restoreChain(int count) {
   }
   while (stages() > count) chain_.dropLastStage();
   base_ = above_;
-  followBase();
   advanced_.leftCols(count_) = constraints_.leftCols(count_);
   chain_.advance(advanced_.leftCols(count_));
 }
 
-// A stage of constraints, ±(index + 1), at their upper or lower bounds.
-void Hqp::Solver::holdAtBounds(const std::vector<int>& signed_rows) {
-  open_rows_ = static_cast<int>(signed_rows.size());
-  for (int i = 0; i < open_rows_; ++i) {
+// A stage of constraints, ±(index + 1), at their upper or lower bounds; brings them into its own order.
+void Hqp::Solver::holdAtBounds(std::vector<int>& signed_rows) {
+  const int count = static_cast<int>(signed_rows.size());
+  at_base_.head(count_).noalias() = base_.transpose() * constraints_.leftCols(count_);
+  for (int i = 0; i < count; ++i) {
     const int j = std::abs(signed_rows[i]) - 1;
-    rows_.col(i) = advanced_.col(j);
+    held_rows_.col(i) = advanced_.col(j);
     target_[i] = (signed_rows[i] > 0 ? upper_[j] : lower_[j]) - at_base_[j];
   }
-  chain_.hold(open());
-  weights_.head(open_rows_).setOnes();
-  chain_.leastSquares(open(), target_.head(open_rows_), weights_.head(open_rows_), z_);
+  auto rows = held_rows_.leftCols(count);
+  chain_.hold(rows);
+  weights_.head(count).setOnes();
+  chain_.leastSquares(rows, target_.head(count), weights_.head(count), z_);
   toPoint();
   base_ = y_;
-  followBase();
   chain_.advance(stages() - 1, advanced_.leftCols(count_));
-}
-
-void Hqp::Solver::followBase() {
-  auto products = at_base_.head(count_);
-  products.setZero();
-  for (int k = 0; k < dof_; ++k) products += base_[k] * constraints_.row(k).head(count_);
+  order_ = signed_rows;
+  for (int i = 0; i < count; ++i) signed_rows[i] = order_[chain_.column(i)];
 }
 
 // The level's equality rows stay as they are; its inequality rows become constraints at where they are.
@@ -496,9 +576,10 @@ void Hqp::Solver::holdLevel(int level, TickSolution& solution) {
     chain_.advance(open());
     chain_.hold(open());
   }
-  control::LevelRanks::write(chain_.lastStage(), level, dof_, solution);
+  holds_bounds_ |= stages() > stages_above_ + 1;
+  if (with_ranks_ && !holds_bounds_) control::LevelRanks::write(chain_.lastStage(), level, dof_, solution);
   if (level + 1 == whitened_.levelCount()) return;
-  if (count_ > 0 && open_stage_stays) {
+  if (open_stage_stays && have_turned_) {
     chain_.fade(stages() - 1, turned_.leftCols(count_));
     advanced_.swap(turned_);
   } else if (count_ > 0) {
@@ -522,7 +603,6 @@ void Hqp::Solver::holdLevel(int level, TickSolution& solution) {
     }
     count_ += rows;
   }
-  followBase();
 }
 
 // y = base + what z_ stands for.
@@ -552,7 +632,7 @@ void Hqp::Solver::reportActive(TickSolution& solution) {
     }
 }
 
-// By level and pass: how many, then the rows.
+// By level and kind: how many, then the rows.
 control::WarmStart Hqp::Solver::warmStart() const {
   control::WarmStart numbers;
   for (const std::vector<int>& start : starts_) {
@@ -586,7 +666,9 @@ Hqp::Hqp(const HqpOptions& options)
 Hqp::~Hqp() = default;
 
 void Hqp::doPrepare(const TickProblem& shape) { solver_ = std::make_unique<Solver>(shape, options_); }
-void Hqp::doSolve(const TickProblem& problem, TickSolution& solution) { solver_->solve(problem, deadline(), solution); }
+void Hqp::doSolve(const TickProblem& problem, TickSolution& solution) {
+  solver_->solve(problem, deadline(), reportsRanks(), solution);
+}
 control::WarmStart Hqp::warmStart() const { return solver_->warmStart(); }
 void Hqp::setWarmStart(const control::WarmStart& start) { solver_->setWarmStart(start); }
 
