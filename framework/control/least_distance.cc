@@ -63,7 +63,7 @@ LeastDistance::Outcome LeastDistance::solve(const Rows& rows, const Bounds& boun
     guessed = false;
     contradiction |= outcome == Outcome::infeasible;
     if (outcome == Outcome::solved) {
-      if (largestViolation() <= 10 * tolerance * size_) break;
+      if (largestViolation() <= 10 * tolerance * size_ && activeAreAtBounds(10 * tolerance)) break;
       outcome = Outcome::exhausted;
     }
     if (late_) break;
@@ -168,6 +168,15 @@ double LeastDistance::largestViolation() const {
   double largest = -no_bound;
   for (int j = 0; j < m_; ++j) largest = std::max(largest, violation(j));
   return largest;
+}
+
+// Not so where rows that contradict each other passed for independent ones: their point lies far inside of some.
+bool LeastDistance::activeAreAtBounds(double tolerance) const {
+  for (int i = 0; i < active_count_; ++i) {
+    const double at = bound(active_[i], side_[i]);
+    if (std::abs(products_[active_[i]] - at) > tolerance * (size_ + std::abs(at))) return false;
+  }
+  return true;
 }
 
 bool LeastDistance::outOfTime() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tactus::control {
 namespace {
@@ -212,10 +213,19 @@ void PriorityFactor::reflect(const Memory& memory, int i, ColumnsRef columns) {
   const double* v = memory.v.col(i).data() + row;
   double* a = &columns(row, 0);
   const Eigen::Index stride = columns.outerStride();
+  const double beta = memory.beta[i];
+  if (stride == 1) {
+    const auto reflection = memory.v.col(i).tail(rows);
+    Eigen::Map<Eigen::VectorXd> column(a, rows);
+    column -= beta * reflection.dot(column) * reflection;
+    return;
+  }
   int j = 0;
-  for (; j + 8 <= count; j += 8) reflectStrip<8>(v, memory.beta[i], rows, a + j, stride);
-  for (; j + 2 <= count; j += 2) reflectStrip<2>(v, memory.beta[i], rows, a + j, stride);
-  if (j < count) reflectStrip<1>(v, memory.beta[i], rows, a + j, stride);
+  for (; j + 16 <= count; j += 16) reflectStrip<16>(v, beta, rows, a + j, stride);
+  if (count & 8) reflectStrip<8>(v, beta, rows, a + std::exchange(j, j + 8), stride);
+  if (count & 4) reflectStrip<4>(v, beta, rows, a + std::exchange(j, j + 4), stride);
+  if (count & 2) reflectStrip<2>(v, beta, rows, a + std::exchange(j, j + 2), stride);
+  if (count & 1) reflectStrip<1>(v, beta, rows, a + j, stride);
 }
 
 void PriorityFactor::rotate(const Memory& memory, bool transposed, ColumnsRef columns) {

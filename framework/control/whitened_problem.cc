@@ -5,6 +5,8 @@
 namespace tactus::control {
 namespace {
 
+constexpr int strip = 16;                                          // columns that are whitened together
+
 /// a ← L⁻¹ a for `width` neighbouring columns, whose sums stay in registers; zeros of L, which a tree of bodies has, cost
 /// nothing.
 template <int width>
@@ -28,7 +30,7 @@ WhitenedProblem::WhitenedProblem(const TickProblem& shape)
       levels_(shape.levels.size()),
       origins_(shape.rowCapacity()),
       cholesky_(shape.dof),
-      columns_(shape.dof, shape.rowCapacity()),
+      columns_(RowMajorMatrix::Zero(shape.dof, (shape.rowCapacity() + strip - 1) / strip * strip)),
       norms_(shape.rowCapacity()),
       forces_(shape.rowCapacity()),
       own_torques_(shape.dof, shape.levels.size()),
@@ -84,15 +86,9 @@ void WhitenedProblem::gather(const TickProblem& problem) {
   inequality_count_ = count_ - first_inequality_;
 }
 
-// Forward substitution L Aᵀ = Jᵀ for all rows.
+// Forward substitution L Aᵀ = Jᵀ for all rows; the last strip may reach beyond them, into columns that nobody reads.
 void WhitenedProblem::whiten() {
-  const Eigen::MatrixXd& L = massFactor();
-  const Eigen::Index stride = columns_.outerStride();
-  double* a = columns_.data();
-  int j = 0;
-  for (; j + 16 <= count_; j += 16) forwardStrip<16>(L, a + j, stride);
-  for (; j + 4 <= count_; j += 4) forwardStrip<4>(L, a + j, stride);
-  for (; j < count_; ++j) forwardStrip<1>(L, a + j, stride);
+  for (int j = 0; j < count_; j += strip) forwardStrip<strip>(massFactor(), columns_.data() + j, columns_.outerStride());
 }
 
 int WhitenedProblem::inequalityRowsAbove(int level) const {

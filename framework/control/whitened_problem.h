@@ -80,7 +80,7 @@ class WhitenedProblem {
   std::vector<LevelRows> levels_;
   std::vector<ActiveRow> origins_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
-  RowMajorMatrix columns_;                                         // dof × row capacity
+  RowMajorMatrix columns_;                                         // dof × row capacity, and room for a strip
   Eigen::VectorXd norms_;
   Eigen::VectorXd forces_;
   Eigen::MatrixXd own_torques_;                                    // dof × levels

@@ -76,6 +76,7 @@ class Hqp::Solver {
   void holdAtBounds(std::vector<int>& signed_rows);
   bool isBounded(int signed_row) const;
   bool leavesABound(double share = kept);
+  void advanceConstraints(int stages);
   void gatherRows(int first, double of_free_directions = 0);
   void guess(const std::vector<int>& signed_rows);
   Outcome nearest(int first);
@@ -104,11 +105,13 @@ class Hqp::Solver {
   int count_ = 0;
   int limit_count_ = 0;
   RowMajorMatrix constraints_;                                     // unit rows, dof × count
-  RowMajorMatrix advanced_;                                        // taken through the chain without its open stage
-  RowMajorMatrix turned_;                                          // and through the open stage
+  RowMajorMatrix advanced_;                                        // taken through the chain's first stages,
+  int advanced_stages_ = 0;                                        // so many of them
+  RowMajorMatrix turned_;                                          // and through the open stage, if it was asked for
   bool have_turned_ = false;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
+  Eigen::VectorXd limit_lengths_;
   Eigen::RowVectorXd at_base_;                                     // c base, when it was last asked for
   Eigen::RowVectorXd products_;                                    // c y at the point that was looked at last
   Eigen::VectorXd multipliers_;
@@ -156,6 +159,7 @@ Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
       turned_(constraints_),
       lower_(constraints_.cols()),
       upper_(constraints_.cols()),
+      limit_lengths_(shape.dof),
       at_base_(constraints_.cols()),
       products_(constraints_.cols()),
       multipliers_(shape.dof),
@@ -187,6 +191,7 @@ void Hqp::Solver::solve(const TickProblem& given, const control::Deadline& deadl
   step_limit_ = deadline.iterations;
   end_ = deadline.end();
   chain_.reset();
+  advanced_stages_ = 0;
   y_.setZero();
   base_.setZero();
   bool entered = !problem.torque_limits;
@@ -256,29 +261,29 @@ const TickProblem& Hqp::Solver::withinForceBounds(const TickProblem& problem) {
 
 // Row i of L as a constraint on y; nothing binds before the limits' level.
 void Hqp::Solver::makeLimits(const TickProblem& problem) {
-  const auto& L = whitened_.massFactor();
-  for (int i = 0; i < dof_; ++i) {
-    constraints_.col(i).setZero();
-    constraints_.col(i).head(i + 1) = L.row(i).head(i + 1).transpose() / L.row(i).head(i + 1).norm();
-  }
   limit_count_ = count_ = problem.dof;
+  const auto& L = whitened_.massFactor();
+  auto lengths = limit_lengths_.head(count_);
+  lengths.setZero();
+  for (int k = 0; k < dof_; ++k) lengths.tail(dof_ - k) += L.col(k).tail(dof_ - k).cwiseAbs2();
+  lengths = lengths.cwiseSqrt();
+  for (int k = 0; k < dof_; ++k) {
+    constraints_.row(k).head(k).setZero();
+    constraints_.row(k).segment(k, dof_ - k) = L.col(k).tail(dof_ - k).cwiseQuotient(lengths.tail(dof_ - k)).transpose();
+  }
   lower_.head(count_).setConstant(-no_bound);
   upper_.head(count_).setConstant(no_bound);
-  advanced_.leftCols(count_) = constraints_.leftCols(count_);
 }
 
 // From here on the limits bind.  False when what is held above does not fit: then they are relaxed by the least squares
 // of their violations.
 bool Hqp::Solver::enterLimits(const TickProblem& problem) {
-  const auto& L = whitened_.massFactor();
+  auto products = products_.head(limit_count_);
+  products.noalias() = y_.transpose() * constraints_.leftCols(limit_count_);
+  lower_.head(limit_count_) = problem.torque_limits->lower.cwiseQuotient(limit_lengths_);
+  upper_.head(limit_count_) = problem.torque_limits->upper.cwiseQuotient(limit_lengths_);
   bool fits = true;
-  for (int i = 0; i < limit_count_; ++i) {
-    const double length = L.row(i).head(i + 1).norm();
-    lower_[i] = problem.torque_limits->lower[i] / length;
-    upper_[i] = problem.torque_limits->upper[i] / length;
-    const double product = constraints_.col(i).dot(y_);
-    fits &= product >= lower_[i] && product <= upper_[i];
-  }
+  for (int i = 0; i < limit_count_; ++i) fits &= products[i] >= lower_[i] && products[i] <= upper_[i];
   if (fits) return true;
   const bool found = std::any_of(std::begin(free_prices), std::end(free_prices), [&](double p) { return leastViolation(p); });
   fits = found;
@@ -298,6 +303,7 @@ bool Hqp::Solver::leastViolation(double of_free_directions) {
   const int free = dof_ - first;
   const int size = free + limit_count_;
   at_base_.head(count_).noalias() = base_.transpose() * constraints_.leftCols(count_);
+  advanceConstraints(stages());
   auto rows = small_.topLeftCorner(size, count_);
   rows.setZero();
   rows.topRows(free) = advanced_.block(first, 0, free, count_) / of_free_directions;
@@ -429,12 +435,18 @@ Hqp::Solver::Outcome Hqp::Solver::enterBounds(int level, double tolerated) {
   return leavesABound(tolerated) ? Outcome::impossible : Outcome::solved;
 }
 
+void Hqp::Solver::advanceConstraints(int stages) {
+  if (advanced_stages_ == 0) advanced_.leftCols(count_) = constraints_.leftCols(count_);
+  for (; advanced_stages_ < stages; ++advanced_stages_) chain_.advance(advanced_stages_, advanced_.leftCols(count_));
+}
+
 // Constraints in the coordinates from `first` on, about the point z_, as unit rows; with a price in the metric of the
 // level's error and of that price.  Those that the coordinates before
 // decide already fade out.
 void Hqp::Solver::gatherRows(int first, double of_free_directions) {
   const int free = dof_ - first;
   if (!have_turned_) {
+    advanceConstraints(stages() - 1);
     turned_.leftCols(count_) = advanced_.leftCols(count_);
     chain_.turn(stages() - 1, turned_.leftCols(count_));
     have_turned_ = true;
@@ -541,8 +553,7 @@ void Hqp::Solver::restoreChain(int count) {
   }
   while (stages() > count) chain_.dropLastStage();
   base_ = above_;
-  advanced_.leftCols(count_) = constraints_.leftCols(count_);
-  chain_.advance(advanced_.leftCols(count_));
+  if (advanced_stages_ > count) advanced_stages_ = 0;
 }
 
 // A stage of constraints, ±(index + 1), at their upper or lower bounds; brings them into its own order.
@@ -551,16 +562,16 @@ void Hqp::Solver::holdAtBounds(std::vector<int>& signed_rows) {
   at_base_.head(count_).noalias() = base_.transpose() * constraints_.leftCols(count_);
   for (int i = 0; i < count; ++i) {
     const int j = std::abs(signed_rows[i]) - 1;
-    held_rows_.col(i) = advanced_.col(j);
+    held_rows_.col(i) = constraints_.col(j);
     target_[i] = (signed_rows[i] > 0 ? upper_[j] : lower_[j]) - at_base_[j];
   }
   auto rows = held_rows_.leftCols(count);
+  chain_.advance(rows);
   chain_.hold(rows);
   weights_.head(count).setOnes();
   chain_.leastSquares(rows, target_.head(count), weights_.head(count), z_);
   toPoint();
   base_ = y_;
-  chain_.advance(stages() - 1, advanced_.leftCols(count_));
   order_ = signed_rows;
   for (int i = 0; i < count; ++i) signed_rows[i] = order_[chain_.column(i)];
 }
@@ -582,8 +593,7 @@ void Hqp::Solver::holdLevel(int level, TickSolution& solution) {
   if (open_stage_stays && have_turned_) {
     chain_.fade(stages() - 1, turned_.leftCols(count_));
     advanced_.swap(turned_);
-  } else if (count_ > 0) {
-    chain_.advance(stages() - 1, advanced_.leftCols(count_));
+    ++advanced_stages_;
   }
   // What lower levels cannot reach of the point; a faded direction by its share.
   column_.col(0) = y_;
@@ -595,8 +605,7 @@ void Hqp::Solver::holdLevel(int level, TickSolution& solution) {
   const int rows = whitened_.inequalityRowsAbove(level + 1) - first;
   if (rows > 0) {
     constraints_.middleCols(count_, rows) = whitened_.inequalities().middleCols(first, rows);
-    advanced_.middleCols(count_, rows) = constraints_.middleCols(count_, rows);
-    chain_.advance(advanced_.middleCols(count_, rows));
+    advanced_stages_ = 0;
     for (int j = count_; j < count_ + rows; ++j) {
       lower_[j] = -no_bound;
       upper_[j] = constraints_.col(j).dot(y_) + room * y_.norm();
