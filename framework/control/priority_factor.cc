@@ -16,13 +16,11 @@ constexpr double negligible_ratio = 1e-3;                          // to the ran
 /// a ← (I − β v vᵀ) a for `width` neighbouring columns, whose sums stay in registers.
 template <int width>
 void reflectStrip(const double* v, double beta, int rows, double* a, Eigen::Index stride) {
-  double w[width];
-  for (int j = 0; j < width; ++j) w[j] = v[0] * a[j];
-  for (int k = 1; k < rows; ++k)
-    for (int j = 0; j < width; ++j) w[j] += v[k] * a[k * stride + j];
-  for (int j = 0; j < width; ++j) w[j] *= beta;
-  for (int k = 0; k < rows; ++k)
-    for (int j = 0; j < width; ++j) a[k * stride + j] -= v[k] * w[j];
+  using Strip = Eigen::Array<double, width, 1>;
+  Strip w = v[0] * Eigen::Map<const Strip>(a);
+  for (int k = 1; k < rows; ++k) w += v[k] * Eigen::Map<const Strip>(a + k * stride);
+  w *= beta;
+  for (int k = 0; k < rows; ++k) Eigen::Map<Strip>(a + k * stride) -= v[k] * w;
 }
 
 }  // namespace

@@ -11,15 +11,12 @@ constexpr int strip = 16;                                          // columns th
 /// nothing.
 template <int width>
 void forwardStrip(const Eigen::MatrixXd& L, double* a, Eigen::Index stride) {
+  using Strip = Eigen::Array<double, width, 1>;
   for (int i = 0; i < L.rows(); ++i) {
-    double w[width];
-    for (int j = 0; j < width; ++j) w[j] = a[i * stride + j];
-    for (int k = 0; k < i; ++k) {
-      const double l = L(i, k);
-      if (l == 0) continue;
-      for (int j = 0; j < width; ++j) w[j] -= l * a[k * stride + j];
-    }
-    for (int j = 0; j < width; ++j) a[i * stride + j] = w[j] / L(i, i);
+    Strip w = Eigen::Map<const Strip>(a + i * stride);
+    for (int k = 0; k < i; ++k)
+      if (L(i, k) != 0) w -= L(i, k) * Eigen::Map<const Strip>(a + k * stride);
+    Eigen::Map<Strip>(a + i * stride) = w / L(i, i);
   }
 }
 
