@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/control/strips.h"
+
 namespace tactus::control {
 namespace {
 
@@ -154,9 +156,13 @@ void LeastDistance::settle(const Vector& c) {
 }
 
 void LeastDistance::updateProducts(const Rows& rows) {
-  auto products = products_.head(m_);
-  products.setZero();
-  for (int k = 0; k < n_; ++k) products += x_[k] * rows.row(k).transpose();
+  const double* b = rows.data();
+  const Eigen::Index stride = rows.outerStride();
+  forEachStrip(m_, [&](auto width, int j) {
+    Strip<width()> sum = Strip<width()>::Zero();
+    for (int k = 0; k < n_; ++k) sum += x_[k] * Eigen::Map<const Strip<width()>>(b + k * stride + j);
+    products_.segment<width()>(j) = sum;
+  });
 }
 
 double LeastDistance::violation(int row) const {

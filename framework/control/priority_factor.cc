@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "framework/control/strips.h"
 
 namespace tactus::control {
 namespace {
@@ -13,14 +14,13 @@ constexpr double rotation_tolerance = 1e-15;                       // cosine bel
 constexpr double recompute_below = 1e-8;
 constexpr double negligible_ratio = 1e-3;                          // to the rank tolerance
 
-/// a ← (I − β v vᵀ) a for `width` neighbouring columns, whose sums stay in registers.
+/// a ← (I − β v vᵀ) a for a strip of columns.
 template <int width>
 void reflectStrip(const double* v, double beta, int rows, double* a, Eigen::Index stride) {
-  using Strip = Eigen::Array<double, width, 1>;
-  Strip w = v[0] * Eigen::Map<const Strip>(a);
-  for (int k = 1; k < rows; ++k) w += v[k] * Eigen::Map<const Strip>(a + k * stride);
+  Strip<width> w = v[0] * Eigen::Map<const Strip<width>>(a);
+  for (int k = 1; k < rows; ++k) w += v[k] * Eigen::Map<const Strip<width>>(a + k * stride);
   w *= beta;
-  for (int k = 0; k < rows; ++k) Eigen::Map<Strip>(a + k * stride) -= v[k] * w;
+  for (int k = 0; k < rows; ++k) Eigen::Map<Strip<width>>(a + k * stride) -= v[k] * w;
 }
 
 }  // namespace
@@ -218,12 +218,7 @@ void PriorityFactor::reflect(const Memory& memory, int i, ColumnsRef columns) {
     column -= beta * reflection.dot(column) * reflection;
     return;
   }
-  int j = 0;
-  for (; j + 16 <= count; j += 16) reflectStrip<16>(v, beta, rows, a + j, stride);
-  if (count & 8) reflectStrip<8>(v, beta, rows, a + std::exchange(j, j + 8), stride);
-  if (count & 4) reflectStrip<4>(v, beta, rows, a + std::exchange(j, j + 4), stride);
-  if (count & 2) reflectStrip<2>(v, beta, rows, a + std::exchange(j, j + 2), stride);
-  if (count & 1) reflectStrip<1>(v, beta, rows, a + j, stride);
+  forEachStrip(count, [&](auto width, int j) { reflectStrip<width()>(v, beta, rows, a + j, stride); });
 }
 
 void PriorityFactor::rotate(const Memory& memory, bool transposed, ColumnsRef columns) {

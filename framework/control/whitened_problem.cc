@@ -2,21 +2,21 @@
 
 #include <cmath>
 
+#include "framework/control/strips.h"
+
 namespace tactus::control {
 namespace {
 
-constexpr int strip = 16;                                          // columns that are whitened together
+constexpr int whole_strip = 16;
 
-/// a ← L⁻¹ a for `width` neighbouring columns, whose sums stay in registers; zeros of L, which a tree of bodies has, cost
-/// nothing.
+/// a ← L⁻¹ a for a strip of columns; zeros of L, which a tree of bodies has, cost nothing.
 template <int width>
 void forwardStrip(const Eigen::MatrixXd& L, double* a, Eigen::Index stride) {
-  using Strip = Eigen::Array<double, width, 1>;
   for (int i = 0; i < L.rows(); ++i) {
-    Strip w = Eigen::Map<const Strip>(a + i * stride);
+    Strip<width> w = Eigen::Map<const Strip<width>>(a + i * stride);
     for (int k = 0; k < i; ++k)
-      if (L(i, k) != 0) w -= L(i, k) * Eigen::Map<const Strip>(a + k * stride);
-    Eigen::Map<Strip>(a + i * stride) = w / L(i, i);
+      if (L(i, k) != 0) w -= L(i, k) * Eigen::Map<const Strip<width>>(a + k * stride);
+    Eigen::Map<Strip<width>>(a + i * stride) = w / L(i, i);
   }
 }
 
@@ -27,7 +27,7 @@ WhitenedProblem::WhitenedProblem(const TickProblem& shape)
       levels_(shape.levels.size()),
       origins_(shape.rowCapacity()),
       cholesky_(shape.dof),
-      columns_(RowMajorMatrix::Zero(shape.dof, (shape.rowCapacity() + strip - 1) / strip * strip)),
+      columns_(RowMajorMatrix::Zero(shape.dof, (shape.rowCapacity() + whole_strip - 1) / whole_strip * whole_strip)),
       norms_(shape.rowCapacity()),
       forces_(shape.rowCapacity()),
       own_torques_(shape.dof, shape.levels.size()),
@@ -85,7 +85,8 @@ void WhitenedProblem::gather(const TickProblem& problem) {
 
 // Forward substitution L Aᵀ = Jᵀ for all rows; the last strip may reach beyond them, into columns that nobody reads.
 void WhitenedProblem::whiten() {
-  for (int j = 0; j < count_; j += strip) forwardStrip<strip>(massFactor(), columns_.data() + j, columns_.outerStride());
+  for (int j = 0; j < count_; j += whole_strip)
+    forwardStrip<whole_strip>(massFactor(), columns_.data() + j, columns_.outerStride());
 }
 
 int WhitenedProblem::inequalityRowsAbove(int level) const {
