@@ -97,8 +97,8 @@ void WhitenedProblem::toTorque(const Eigen::VectorXd& y, Eigen::VectorXd& torque
   torque.noalias() = massFactor().triangularView<Eigen::Lower>() * y;
 }
 
-// Calls f(j, asked, reached) for each row that the level asks something of: J y = `asked` in the row's own units, and
-// the unit row's product with y.  Of a task that asks for the acceleration of its own torque y°, 0 and that with y − y°.
+// Calls f(j, asked, reached) for each row that the level asks something of: what it asks for in the row's own units, and
+// the unit row's product with y.  Of a task that asks for what its own torque y° does, 0 and the product with y − y°.
 template <typename F>
 void WhitenedProblem::forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, const F& f) {
   for (const Relation relation : {Relation::equality, Relation::inequality}) {
