@@ -35,17 +35,21 @@ long preemptions() {
   return usage.ru_nivcsw;
 }
 
-/// Each call timed alone; what the scheduler interrupted is taken again.
-Timing measure(const std::function<void(int)>& call, int samples) {
-  for (int k = 0; k < 200; ++k) call(k);
+/// Each call timed alone; what the scheduler interrupted is taken again.  `before` each call, outside of its time.
+Timing measure(const std::function<void(int)>& call, int samples, const std::function<void(int)>& before = [](int) {}) {
+  for (int k = 0; k < 200; ++k) {
+    before(k);
+    call(k);
+  }
   std::vector<double> microseconds;
   microseconds.reserve(samples);
   for (int k = 0; static_cast<int>(microseconds.size()) < samples; ++k) {
-    const long before = preemptions();
+    before(k);
+    const long preempted = preemptions();
     const auto start = Clock::now();
     call(k);
     const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-    if (preemptions() == before) microseconds.push_back(us);
+    if (preemptions() == preempted) microseconds.push_back(us);
   }
   std::ranges::sort(microseconds);
   const auto at = [&](double share) {
@@ -106,7 +110,12 @@ Figure measureTick(const TickCase& tick_case, const BackEndChoice& choice, int s
   return figure;
 }
 
-// ---- Solves alone, from assembled matrices.
+// ---- Solves alone, from assembled matrices; these are put where the solver reads them before its time begins, as in a
+// tick, whose matrices are in the cache because they have just been written.
+
+std::string aloneName(const std::string& what, int contacts) {
+  return what + " alone, " + std::to_string(contacts) + " contacts";
+}
 
 Eigen::MatrixXd gaussian(std::mt19937& random, int rows, int columns) {
   std::normal_distribution<> normal;
@@ -174,27 +183,39 @@ Figure measureWeightedSolve(int contacts, double target_us, int samples) {
   const std::vector<qp::Programme> programmes = weightedProgrammes(contacts);
   const qp::Programme& shape = programmes[0];
   qp::ActiveSet solver(shape.variables, shape.dense, 0, shape.rows);
-  Figure figure{"weighted QP alone, " + std::to_string(contacts) + " contacts", "active-set", {}, 0, 0, {}, target_us};
+  Figure figure{aloneName("weighted QP", contacts), "active-set", {}, 0, 0, {}, target_us};
   std::vector<int> start;
   start.reserve(2 * shape.rows);
+  qp::Programme programme = shape;
   int calls = 0;
   figure.timing = measure(
-      [&](int k) {
+      [&](int) {
         for (const int row : start) solver.guess(std::abs(row) - 1, row);
-        const auto outcome = solver.solve(programmes[k % Sequence::length]);
+        const auto outcome = solver.solve(programme);
         start.clear();
         for (int i = 0; i < solver.activeCount(); ++i) start.push_back(solver.side(i) * (solver.active(i) + 1));
         figure.steps += solver.activeCount();
         figure.failures += outcome != qp::ActiveSet::Outcome::solved;
         ++calls;
       },
-      samples);
+      samples, [&](int k) { programme = programmes[k % Sequence::length]; });
   figure.steps /= calls;
   return figure;
 }
 
-/// Torque limits > contacts > hand > posture, 7 to 15 limits at their bounds.
-Figure measureHierarchySolve(int contacts, double target_us, int samples) {
+struct HierarchyCase {
+  int contacts;
+  double hand, posture;                                            ///< amplitudes of the accelerations asked for
+  double target_us;
+};
+
+/// Amplitudes that bring 7 to 15 limits to their bounds: with fewer directions left for the posture it has to ask for
+/// more, and beside 12 contacts the hand too.
+constexpr HierarchyCase hierarchy_cases[] = {{0, 30, 80, 9}, {3, 30, 100, 31}, {6, 40, 300, 36}, {12, 500, 250, 75}};
+
+/// Torque limits > contacts > hand > posture.
+Figure measureHierarchySolve(const HierarchyCase& hierarchy, int samples) {
+  const int contacts = hierarchy.contacts;
   const Sequence sequence(contacts, 2);
   constexpr int n = Sequence::dof;
   std::vector<control::TickProblem> problems;
@@ -208,9 +229,10 @@ Figure measureHierarchySolve(int contacts, double target_us, int samples) {
     touch.jacobian = sequence.contactRows(k);
     touch.force.setConstant(0.5);
     hand.jacobian = sequence.handRows(k);
-    for (int i = 0; i < 6; ++i) hand.acceleration[i] = 30 * sequence.wave(k, i + 3);
+    for (int i = 0; i < 6; ++i) hand.acceleration[i] = hierarchy.hand * sequence.wave(k, i + 3);
     posture.jacobian.setIdentity();
-    for (int i = 0; i < n; ++i) posture.acceleration[i] = 45 * sequence.wave(k, i + 9) + 20 * sequence.wave(3 * k, i);
+    for (int i = 0; i < n; ++i)
+      posture.acceleration[i] = hierarchy.posture * (sequence.wave(k, i + 9) + 0.45 * sequence.wave(3 * k, i));
     hand.has_acceleration = posture.has_acceleration = true;
     int priority = 1;
     for (control::TickTask* task : {&touch, &hand, &posture}) {
@@ -221,19 +243,20 @@ Figure measureHierarchySolve(int contacts, double target_us, int samples) {
     problems.push_back(problem);
   }
   hqp::Hqp back_end;
+  back_end.setReportsRanks(false);                                 // as in whole ticks
   control::TickSolution solution;
-  back_end.prepare(problems[0], solution);
-  Figure figure{"hierarchy alone, " + std::to_string(contacts) + " contacts", "hqp", {}, 0, 0, {}, target_us};
+  control::TickProblem problem = problems[0];
+  back_end.prepare(problem, solution);
+  Figure figure{aloneName("hierarchy", contacts), "hqp", {}, 0, 0, {}, hierarchy.target_us};
   int calls = 0;
   figure.timing = measure(
-      [&](int k) {
-        const control::TickProblem& problem = problems[k % Sequence::length];
+      [&](int) {
         back_end.solve(problem, solution);
         figure.failures += solution.status != control::Status::ok;
         for (int i = 0; i < n; ++i) figure.steps += std::abs(std::abs(solution.torque[i]) - 8) < 1e-9;
         ++calls;
       },
-      samples);
+      samples, [&](int k) { problem = problems[k % Sequence::length]; });
   figure.steps /= calls;
   return figure;
 }
@@ -314,13 +337,13 @@ int run(const Options& options) {
       if (wanted(tick_case->name(), back_end.label)) add(measureTick(*tick_case, back_end, samples / 20));
   }
   if (!options.json) std::printf("solve alone; steps: rows at their bounds\n");
-  constexpr double weighted_targets[] = {1.35, 1.75, 5.7, 9.7}, hierarchy_targets[] = {9, 31, 36, 75};
+  constexpr double weighted_targets[] = {1.35, 1.75, 5.7, 9.7};
   constexpr int contacts[] = {0, 3, 6, 12};
   for (int i = 0; i < 4; ++i)
-    if (wanted("weighted QP alone", "active-set"))
+    if (wanted(aloneName("weighted QP", contacts[i]), "active-set"))
       add(measureWeightedSolve(contacts[i], weighted_targets[i], samples));
-  for (int i = 0; i < 4; ++i)
-    if (wanted("hierarchy alone", "hqp")) add(measureHierarchySolve(contacts[i], hierarchy_targets[i], samples));
+  for (const HierarchyCase& hierarchy : hierarchy_cases)
+    if (wanted(aloneName("hierarchy", hierarchy.contacts), "hqp")) add(measureHierarchySolve(hierarchy, samples));
   if (options.json) {
     nlohmann::ordered_json all;
     if (mujoco) all["mujoco_tick_us"] = mujoco->median_us;

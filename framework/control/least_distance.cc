@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/control/strips.h"
+
 namespace tactus::control {
 namespace {
 
@@ -63,7 +65,7 @@ LeastDistance::Outcome LeastDistance::solve(const Rows& rows, const Bounds& boun
     guessed = false;
     contradiction |= outcome == Outcome::infeasible;
     if (outcome == Outcome::solved) {
-      if (largestViolation() <= 10 * tolerance * size_) break;
+      if (largestViolation() <= 10 * tolerance * size_ && activeAreAtBounds(10 * tolerance)) break;
       outcome = Outcome::exhausted;
     }
     if (late_) break;
@@ -154,9 +156,13 @@ void LeastDistance::settle(const Vector& c) {
 }
 
 void LeastDistance::updateProducts(const Rows& rows) {
-  auto products = products_.head(m_);
-  products.setZero();
-  for (int k = 0; k < n_; ++k) products += x_[k] * rows.row(k).transpose();
+  const double* b = rows.data();
+  const Eigen::Index stride = rows.outerStride();
+  forEachStrip(m_, [&](auto width, int j) {
+    Strip<width()> sum = Strip<width()>::Zero();
+    for (int k = 0; k < n_; ++k) sum += x_[k] * Eigen::Map<const Strip<width()>>(b + k * stride + j);
+    products_.segment<width()>(j) = sum;
+  });
 }
 
 double LeastDistance::violation(int row) const {
@@ -168,6 +174,15 @@ double LeastDistance::largestViolation() const {
   double largest = -no_bound;
   for (int j = 0; j < m_; ++j) largest = std::max(largest, violation(j));
   return largest;
+}
+
+// Not so where rows that contradict each other passed for independent ones: their point lies far inside of some.
+bool LeastDistance::activeAreAtBounds(double tolerance) const {
+  for (int i = 0; i < active_count_; ++i) {
+    const double at = bound(active_[i], side_[i]);
+    if (std::abs(products_[active_[i]] - at) > tolerance * (size_ + std::abs(at))) return false;
+  }
+  return true;
 }
 
 bool LeastDistance::outOfTime() {

@@ -75,6 +75,7 @@ class LeastDistance {
   bool isEquality(int row) const { return bounds_.lower && bounds_.lower[row] == bounds_.upper[row]; }
   double violation(int row) const;                                 // of the last products; negative inside the bounds
   double largestViolation() const;
+  bool activeAreAtBounds(double tolerance) const;
   void updateProducts(const Rows& rows);
   int mostViolated() const;
   Outcome addRow(const Rows& rows, int row, int side, bool release);

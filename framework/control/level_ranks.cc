@@ -28,6 +28,7 @@ LevelRanks::LevelRanks(const TickProblem& shape, RankOptions options)
 
 void LevelRanks::report(const WhitenedProblem& problem, TickSolution& solution) {
   factor_.reset();
+  solution.rank_deficient_levels = 0;
   for (int i = 0; i < problem.levelCount(); ++i) {
     auto rows = rows_.leftCols(problem.equalityRows(i));
     rows = problem.equalities(i);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/control/strips.h"
+
 namespace tactus::control {
 namespace {
 
@@ -12,16 +14,13 @@ constexpr double rotation_tolerance = 1e-15;                       // cosine bel
 constexpr double recompute_below = 1e-8;
 constexpr double negligible_ratio = 1e-3;                          // to the rank tolerance
 
-/// a ← (I − β v vᵀ) a for `width` neighbouring columns, whose sums stay in registers.
+/// a ← (I − β v vᵀ) a for a strip of columns.
 template <int width>
 void reflectStrip(const double* v, double beta, int rows, double* a, Eigen::Index stride) {
-  double w[width];
-  for (int j = 0; j < width; ++j) w[j] = v[0] * a[j];
-  for (int k = 1; k < rows; ++k)
-    for (int j = 0; j < width; ++j) w[j] += v[k] * a[k * stride + j];
-  for (int j = 0; j < width; ++j) w[j] *= beta;
-  for (int k = 0; k < rows; ++k)
-    for (int j = 0; j < width; ++j) a[k * stride + j] -= v[k] * w[j];
+  Strip<width> w = v[0] * Eigen::Map<const Strip<width>>(a);
+  for (int k = 1; k < rows; ++k) w += v[k] * Eigen::Map<const Strip<width>>(a + k * stride);
+  w *= beta;
+  for (int k = 0; k < rows; ++k) Eigen::Map<Strip<width>>(a + k * stride) -= v[k] * w;
 }
 
 }  // namespace
@@ -212,10 +211,14 @@ void PriorityFactor::reflect(const Memory& memory, int i, ColumnsRef columns) {
   const double* v = memory.v.col(i).data() + row;
   double* a = &columns(row, 0);
   const Eigen::Index stride = columns.outerStride();
-  int j = 0;
-  for (; j + 8 <= count; j += 8) reflectStrip<8>(v, memory.beta[i], rows, a + j, stride);
-  for (; j + 2 <= count; j += 2) reflectStrip<2>(v, memory.beta[i], rows, a + j, stride);
-  if (j < count) reflectStrip<1>(v, memory.beta[i], rows, a + j, stride);
+  const double beta = memory.beta[i];
+  if (stride == 1) {
+    const auto reflection = memory.v.col(i).tail(rows);
+    Eigen::Map<Eigen::VectorXd> column(a, rows);
+    column -= beta * reflection.dot(column) * reflection;
+    return;
+  }
+  forEachStrip(count, [&](auto width, int j) { reflectStrip<width()>(v, beta, rows, a + j, stride); });
 }
 
 void PriorityFactor::rotate(const Memory& memory, bool transposed, ColumnsRef columns) {

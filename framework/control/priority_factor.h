@@ -46,7 +46,8 @@ class PriorityFactor {
 
   void reset() { stage_count_ = 0; }
   /// Appends a stage that holds the rows in `columns` (n × m: unit rows, transposed, already taken through all
-  /// stages so far); `columns` is destroyed.
+  /// stages so far); of `columns`, coordinates held before stay as they are, the others are left in the stage's own and
+  /// in its own order.
   const Stage& hold(ColumnsRef columns);
   void dropLastStage() { --stage_count_; }
 
@@ -64,7 +65,10 @@ class PriorityFactor {
   void fromMetric(const ConstColumnsRef& columns, VectorRef u) const;
 
   int stages() const { return stage_count_; }
-  const Stage& lastStage() const { return memories_[stage_count_ - 1].stage; }
+  const Stage& stage(int i) const { return memories_[i].stage; }
+  const Stage& lastStage() const { return stage(stage_count_ - 1); }
+  /// Of the columns of the last `hold`, the one that came to place `i`.
+  int column(int i) const { return order_[i]; }
   int dimension() const { return dimension_; }
   /// Coordinates held by all stages; those from here on are free.
   int held() const;

@@ -2,18 +2,37 @@
 
 #include <cmath>
 
+#include "framework/control/strips.h"
+
 namespace tactus::control {
+namespace {
+
+constexpr int whole_strip = 16;
+
+/// a ← L⁻¹ a for a strip of columns; zeros of L, which a tree of bodies has, cost nothing.
+template <int width>
+void forwardStrip(const Eigen::MatrixXd& L, double* a, Eigen::Index stride) {
+  for (int i = 0; i < L.rows(); ++i) {
+    Strip<width> w = Eigen::Map<const Strip<width>>(a + i * stride);
+    for (int k = 0; k < i; ++k)
+      if (L(i, k) != 0) w -= L(i, k) * Eigen::Map<const Strip<width>>(a + k * stride);
+    Eigen::Map<Strip<width>>(a + i * stride) = w / L(i, i);
+  }
+}
+
+}  // namespace
 
 WhitenedProblem::WhitenedProblem(const TickProblem& shape)
     : dof_(shape.dof),
       levels_(shape.levels.size()),
       origins_(shape.rowCapacity()),
       cholesky_(shape.dof),
-      columns_(shape.dof, shape.rowCapacity()),
+      columns_(RowMajorMatrix::Zero(shape.dof, (shape.rowCapacity() + whole_strip - 1) / whole_strip * whole_strip)),
       norms_(shape.rowCapacity()),
       forces_(shape.rowCapacity()),
       own_torques_(shape.dof, shape.levels.size()),
-      products_(shape.rowCapacity()) {}
+      products_(shape.rowCapacity()),
+      from_own_(shape.dof) {}
 
 bool WhitenedProblem::update(const TickProblem& problem) {
   cholesky_.compute(problem.mass_matrix);
@@ -23,11 +42,15 @@ bool WhitenedProblem::update(const TickProblem& problem) {
   own_torques_.setZero();
   for (int j = 0; j < count_; ++j)
     if (forces_[j] != 0) own_torques_.col(origins_[j].level) += forces_[j] * columns_.col(j);
-  for (int j = 0; j < count_; ++j) {
-    norms_[j] = columns_.col(j).norm();
-    if (!std::isfinite(norms_[j])) return false;
-    if (norms_[j] > 0) columns_.col(j) /= norms_[j];
-  }
+  auto A = columns_.leftCols(count_);
+  auto norms = norms_.head(count_);
+  auto lengths = products_.head(count_);
+  lengths.setZero();
+  for (int k = 0; k < dof_; ++k) lengths += A.row(k).cwiseAbs2();
+  norms = lengths.transpose().cwiseSqrt();
+  if (!norms.allFinite()) return false;
+  lengths = (norms.array() > 0).select(norms, 1.0).transpose();
+  for (int k = 0; k < dof_; ++k) A.row(k).array() /= lengths.array();
   return own_torques_.allFinite() && massFactor().diagonal().allFinite();
 }
 
@@ -60,15 +83,10 @@ void WhitenedProblem::gather(const TickProblem& problem) {
   inequality_count_ = count_ - first_inequality_;
 }
 
-// Forward substitution L Aᵀ = Jᵀ for all rows at once; zeros of L, which a tree of bodies has, cost nothing.
+// Forward substitution L Aᵀ = Jᵀ for all rows; the last strip may reach beyond them, into columns that nobody reads.
 void WhitenedProblem::whiten() {
-  const Eigen::MatrixXd& L = massFactor();
-  auto A = columns_.leftCols(count_);
-  for (int i = 0; i < dof_; ++i) {
-    for (int j = 0; j < i; ++j)
-      if (L(i, j) != 0) A.row(i) -= L(i, j) * A.row(j);
-    A.row(i) /= L(i, i);
-  }
+  for (int j = 0; j < count_; j += whole_strip)
+    forwardStrip<whole_strip>(massFactor(), columns_.data() + j, columns_.outerStride());
 }
 
 int WhitenedProblem::inequalityRowsAbove(int level) const {
@@ -79,45 +97,55 @@ void WhitenedProblem::toTorque(const Eigen::VectorXd& y, Eigen::VectorXd& torque
   torque.noalias() = massFactor().triangularView<Eigen::Lower>() * y;
 }
 
+// Calls f(j, asked, reached) for each row that the level asks something of: what it asks for in the row's own units, and
+// the unit row's product with y.  Of a task that asks for what its own torque y° does, 0 and the product with y − y°.
+template <typename F>
+void WhitenedProblem::forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, const F& f) {
+  for (const Relation relation : {Relation::equality, Relation::inequality}) {
+    const bool equality = relation == Relation::equality;
+    int first = equality ? levels_[level].first_equality : levels_[level].first_inequality;
+    for (const TickTask& task : problem.levels[level].tasks) {
+      if (task.relation != relation) continue;
+      auto reached = products_.head(task.rows);
+      from_own_ = y;
+      if (!task.has_acceleration) from_own_ -= own_torques_.col(level);
+      reached.noalias() = from_own_.transpose() * columns_.middleCols(first, task.rows);
+      for (int row = 0; row < task.rows; ++row)
+        if (equality || forces_[first + row] != 0)
+          f(first + row, task.has_acceleration ? task.acceleration[row] : 0, reached[row]);
+      first += task.rows;
+    }
+  }
+}
+
 int WhitenedProblem::gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y,
-                                     RowMajorMatrix& columns, Eigen::VectorXd& b, Eigen::VectorXd& weights) const {
+                                     RowMajorMatrix& columns, Eigen::VectorXd& b, Eigen::VectorXd& weights) {
   const LevelRows& rows = levels_[level];
+  columns.leftCols(rows.equalities) = equalities(level);
   int count = 0;
-  const auto add = [&](int j) {
-    const ActiveRow& at = origins_[j];
-    const TickTask& task = problem.levels[at.level].tasks[at.task];
-    columns.col(count) = columns_.col(j);
+  forEachObjective(problem, level, y, [&](int j, double asked, double reached) {
+    if (count >= rows.equalities) columns.col(count) = columns_.col(j);
     weights[count] = norms_[j] > 0 ? norms_[j] : 1;
-    b[count] = task.has_acceleration ? (norms_[j] > 0 ? task.acceleration[at.row] / norms_[j] : 0)
-                                     : columns_.col(j).dot(own_torques_.col(level));
-    b[count++] -= columns_.col(j).dot(y);
-  };
-  for (int j = rows.first_equality; j < rows.first_equality + rows.equalities; ++j) add(j);
-  for (int j = rows.first_inequality; j < rows.first_inequality + rows.inequalities; ++j)
-    if (forces_[j] != 0) add(j);
+    b[count++] = (norms_[j] > 0 ? asked / norms_[j] : 0) - reached;
+  });
   return count;
+}
+
+void WhitenedProblem::objectiveLeft(const TickProblem& problem, int level, const Eigen::VectorXd& y,
+                                    Eigen::VectorXd& b) {
+  int count = 0;
+  forEachObjective(problem, level, y, [&](int j, double asked, double reached) {
+    b[count++] = (norms_[j] > 0 ? asked / norms_[j] : 0) - reached;
+  });
 }
 
 void WhitenedProblem::reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution) {
   for (int i = 0; i < levelCount(); ++i) {
-    const LevelRows& rows = levels_[i];
     double sum = 0;
-    const auto add = [&](int first, int count, bool with_force_alone) {
-      auto products = products_.head(count);                       // A (y − y°)
-      products.setZero();
-      for (int k = 0; k < dof_; ++k)
-        products += (y[k] - own_torques_(k, i)) * columns_.row(k).segment(first, count);
-      for (int j = first; j < first + count; ++j) {
-        if (with_force_alone && forces_[j] == 0) continue;
-        const ActiveRow& at = origins_[j];
-        const TickTask& task = problem.levels[at.level].tasks[at.task];
-        const double r = task.has_acceleration ? norms_[j] * columns_.col(j).dot(y) - task.acceleration[at.row]
-                                               : norms_[j] * products[j - first];
-        sum += r * r;
-      }
-    };
-    add(rows.first_equality, rows.equalities, false);
-    add(rows.first_inequality, rows.inequalities, true);
+    forEachObjective(problem, i, y, [&](int j, double asked, double reached) {
+      const double r = norms_[j] * reached - asked;
+      sum += r * r;
+    });
     solution.levels[i].residual = std::sqrt(sum);
   }
 }

@@ -57,7 +57,9 @@ class WhitenedProblem {
   /// capacity), a_i − J_i y to `b` and the rows' norms, which bring both back to the level's own units, to `weights`;
   /// returns their number.  The level's equality rows come first.
   int gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, RowMajorMatrix& columns,
-                      Eigen::VectorXd& b, Eigen::VectorXd& weights) const;
+                      Eigen::VectorXd& b, Eigen::VectorXd& weights);
+  /// `b` alone.
+  void objectiveLeft(const TickProblem& problem, int level, const Eigen::VectorXd& y, Eigen::VectorXd& b);
 
  private:
   struct LevelRows {
@@ -68,6 +70,8 @@ class WhitenedProblem {
   };
   void gather(const TickProblem& problem);
   void whiten();
+  template <typename F>
+  void forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, const F& f);
 
   int dof_;
   int count_ = 0;                                                  // rows of this tick
@@ -76,11 +80,12 @@ class WhitenedProblem {
   std::vector<LevelRows> levels_;
   std::vector<ActiveRow> origins_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
-  RowMajorMatrix columns_;                                         // dof × row capacity
+  RowMajorMatrix columns_;                                         // dof × row capacity, and room for a strip
   Eigen::VectorXd norms_;
   Eigen::VectorXd forces_;
   Eigen::MatrixXd own_torques_;                                    // dof × levels
   Eigen::RowVectorXd products_;
+  Eigen::VectorXd from_own_;
 };
 
 }  // namespace tactus::control

@@ -24,8 +24,10 @@ struct HqpOptions {
 ///
 /// In whitened coordinates each level is an orthogonal decomposition of its rows in what the levels above leave.  Where
 /// its optimum leaves an inequality row or a limit, a dual active set finds the rows that must be at their bounds, with
-/// the free directions at a price that hardly counts; the point itself is then computed without that price.  Each level starts
-/// from the rows that it met in the last tick.  Takes no memory after `prepare`.
+/// the free directions at a price that hardly counts; the point itself is then computed without that price.  Each level
+/// starts from the rows that it met in the last tick: where those that cost it something still do, which their
+/// multipliers tell, and nothing else leaves its bounds, the optimum is found and nothing is priced.  Takes no memory
+/// after `prepare`.
 class Hqp final : public control::BackEnd {
  public:
   explicit Hqp(const HqpOptions& options = {});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/control/strips.h"
+
 namespace tactus::qp {
 
 ActiveSet::ActiveSet(int variables, int dense, int objective_rows, int rows)
@@ -66,27 +68,34 @@ void ActiveSet::triangularise(const Programme& programme) {
   }
 }
 
-// a x = a_d R⁻¹ u_d + (a_f / d) u_f for all rows at once, then each to unit length.
+// a x = a_d R⁻¹ u_d + (a_f / d) u_f, a strip of rows at a time, each then to unit length.
 void ActiveSet::transformRows(const Programme& programme) {
   const int n = programme.variables;
-  const int dense = programme.dense;
   const int m = programme.rows;
-  auto rows = rows_.topLeftCorner(n, m);
-  rows = programme.A.topLeftCorner(n, m);
-  auto scales = scales_.head(m);
-  scales.setZero();
-  for (int i = 0; i < n; ++i) {
-    if (i < dense && programme.objective_rows > 0) {
-      for (int k = 0; k < i; ++k)
-        if (R_(k, i) != 0) rows.row(i) -= R_(k, i) * rows.row(k);
+  const int coupled = programme.objective_rows > 0 ? programme.dense : 0;
+  auto inverses = gradient_.head(n);
+  inverses = programme.ridge.head(n).cwiseInverse();
+  inverses.head(programme.dense) = R_.diagonal().head(programme.dense).cwiseInverse();
+  const Eigen::Index stride = rows_.outerStride();
+  control::forEachStrip(m, [&](auto width, int j) {
+    using Strip = control::Strip<width()>;
+    Strip scale = Strip::Zero();
+    double* strip = rows_.data() + j;
+    for (int i = 0; i < n; ++i) {
+      Strip row = Eigen::Map<const Strip>(&programme.A(i, j));
+      for (int k = 0; k < (i < coupled ? i : 0); ++k)
+        if (R_(k, i) != 0) row -= R_(k, i) * Eigen::Map<const Strip>(strip + k * stride);
+      row *= inverses[i];
+      Eigen::Map<Strip>(strip + i * stride) = row;
+      scale += row.square();
     }
-    rows.row(i) *= 1 / (i < dense ? R_(i, i) : programme.ridge[i]);
-    scales += rows.row(i).cwiseAbs2();
-  }
-  scales = (scales.array() > 0).select(scales.array().sqrt().inverse(), 1.0);
-  for (int i = 0; i < n; ++i) rows.row(i).array() *= scales.array();
-  lower_.head(m) = programme.lower.head(m).cwiseProduct(scales.transpose());
-  upper_.head(m) = programme.upper.head(m).cwiseProduct(scales.transpose());
+    scale = (scale > 0).select(scale.sqrt().inverse(), 1.0);
+    for (int i = 0; i < n; ++i) Eigen::Map<Strip>(strip + i * stride) *= scale;
+    scales_.segment<width()>(j) = scale.transpose();
+  });
+  const auto scales = scales_.head(m).transpose();
+  lower_.head(m) = programme.lower.head(m).cwiseProduct(scales);
+  upper_.head(m) = programme.upper.head(m).cwiseProduct(scales);
 }
 
 control::KktResidual ActiveSet::residual(const Programme& programme) {

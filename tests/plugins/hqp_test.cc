@@ -311,6 +311,64 @@ TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {
   EXPECT_LT(warm_steps, cold_steps / 2);
 }
 
+// Whatever rows a tick is told to start with: those of a robot that wanted the opposite, of one that wanted nothing, and
+// of one with other limits.
+TEST(Hqp, AWrongWarmStartChangesNothing) {
+  ProblemSource source(47);
+  double worst = 0;
+  int compared = 0, failed = 0;
+  for (int k = 0; k < 300; ++k) {
+    TickProblem problem = source.problem(mixed());
+    problem.torque_limits = source.limits(problem.dof, 0.5);
+    if (!noFade(problem)) continue;
+    const TickSolution cold = solve(problem);
+    if (cold.status == Status::failed) {                           // rounding left it no way, which a start may show it
+      ++failed;
+      continue;
+    }
+    TickProblem other = problem;
+    const double factor = k % 3 - 1;
+    for (TickLevel& level : other.levels)
+      for (TickTask& task : level.tasks) task.force *= factor;
+    if (factor == 1) other.torque_limits = source.limits(problem.dof, 0.3);
+    Hqp warm;
+    TickSolution solution;
+    warm.prepare(other, solution);
+    warm.solve(other, solution);
+    warm.solve(problem, solution);
+    EXPECT_EQ(solution.status, cold.status);
+    worst = std::max(worst, test::inverseMassNorm(problem, cold.torque - solution.torque) /
+                                test::inverseMassNorm(problem, cold.torque));
+    ++compared;
+  }
+  std::cout << compared << " compared, " << failed << " failed, worst " << worst << "\n";
+  EXPECT_GE(compared, 200);
+  EXPECT_LE(failed, 1);
+  EXPECT_LE(worst, 1e-7);
+}
+
+// Limits may take directions from a level; the ranks are those of its rows alone, in the first tick as in the next.
+TEST(Hqp, RanksAreThoseOfTheRowsWhateverLimitsHold) {
+  ProblemSource source(48);
+  int limited = 0;
+  for (int k = 0; k < 300; ++k) {
+    TickProblem problem = source.problem(equalitiesOnly());
+    if (!noFade(problem)) continue;
+    const TickSolution free = solve(problem);
+    problem.torque_limits = source.limits(problem.dof, 0.5);
+    Hqp back_end;
+    TickSolution solution;
+    back_end.prepare(problem, solution);
+    for (int tick = 0; tick < 2; ++tick) {
+      back_end.solve(problem, solution);
+      for (std::size_t i = 0; i < problem.levels.size(); ++i) EXPECT_EQ(solution.levels[i].rank, free.levels[i].rank);
+      EXPECT_EQ(solution.rank_deficient_levels, free.rank_deficient_levels);
+    }
+    limited += ((solution.torque - free.torque).norm() > 1e-6 * free.torque.norm());
+  }
+  EXPECT_GE(limited, 100);
+}
+
 TEST(Hqp, Law9EveryTickIsFiniteAndWithinLimitsInBoundedWork) {
   ProblemSource source(46);
   int infeasible = 0, late = 0, failed = 0;
