@@ -35,21 +35,17 @@ long preemptions() {
   return usage.ru_nivcsw;
 }
 
-/// Each call timed alone; what the scheduler interrupted is taken again.  `before` each call, outside of its time.
-Timing measure(const std::function<void(int)>& call, int samples, const std::function<void(int)>& before = [](int) {}) {
-  for (int k = 0; k < 200; ++k) {
-    before(k);
-    call(k);
-  }
+/// Each call timed alone; what the scheduler interrupted is taken again.
+Timing measure(const std::function<void(int)>& call, int samples) {
+  for (int k = 0; k < 200; ++k) call(k);
   std::vector<double> microseconds;
   microseconds.reserve(samples);
   for (int k = 0; static_cast<int>(microseconds.size()) < samples; ++k) {
-    before(k);
-    const long preempted = preemptions();
+    const long before = preemptions();
     const auto start = Clock::now();
     call(k);
     const double us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-    if (preemptions() == preempted) microseconds.push_back(us);
+    if (preemptions() == before) microseconds.push_back(us);
   }
   std::ranges::sort(microseconds);
   const auto at = [&](double share) {
@@ -110,8 +106,7 @@ Figure measureTick(const TickCase& tick_case, const BackEndChoice& choice, int s
   return figure;
 }
 
-// ---- Solves alone, from assembled matrices; these are put where the solver reads them before its time begins, as in a
-// tick, whose matrices are in the cache because they have just been written.
+// ---- Solves alone, from assembled matrices.
 
 std::string aloneName(const std::string& what, int contacts) {
   return what + " alone, " + std::to_string(contacts) + " contacts";
@@ -186,19 +181,18 @@ Figure measureWeightedSolve(int contacts, double target_us, int samples) {
   Figure figure{aloneName("weighted QP", contacts), "active-set", {}, 0, 0, {}, target_us};
   std::vector<int> start;
   start.reserve(2 * shape.rows);
-  qp::Programme programme = shape;
   int calls = 0;
   figure.timing = measure(
-      [&](int) {
+      [&](int k) {
         for (const int row : start) solver.guess(std::abs(row) - 1, row);
-        const auto outcome = solver.solve(programme);
+        const auto outcome = solver.solve(programmes[k % Sequence::length]);
         start.clear();
         for (int i = 0; i < solver.activeCount(); ++i) start.push_back(solver.side(i) * (solver.active(i) + 1));
         figure.steps += solver.activeCount();
         figure.failures += outcome != qp::ActiveSet::Outcome::solved;
         ++calls;
       },
-      samples, [&](int k) { programme = programmes[k % Sequence::length]; });
+      samples);
   figure.steps /= calls;
   return figure;
 }
@@ -245,18 +239,18 @@ Figure measureHierarchySolve(const HierarchyCase& hierarchy, int samples) {
   hqp::Hqp back_end;
   back_end.setReportsRanks(false);                                 // as in whole ticks
   control::TickSolution solution;
-  control::TickProblem problem = problems[0];
-  back_end.prepare(problem, solution);
+  back_end.prepare(problems[0], solution);
   Figure figure{aloneName("hierarchy", contacts), "hqp", {}, 0, 0, {}, hierarchy.target_us};
   int calls = 0;
   figure.timing = measure(
-      [&](int) {
+      [&](int k) {
+        const control::TickProblem& problem = problems[k % Sequence::length];
         back_end.solve(problem, solution);
         figure.failures += solution.status != control::Status::ok;
         for (int i = 0; i < n; ++i) figure.steps += std::abs(std::abs(solution.torque[i]) - 8) < 1e-9;
         ++calls;
       },
-      samples, [&](int k) { problem = problems[k % Sequence::length]; });
+      samples);
   figure.steps /= calls;
   return figure;
 }
