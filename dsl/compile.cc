@@ -222,6 +222,9 @@ class Compiler {
     control::ControllerOptions options;
     if (values.has("torque-rate")) options.torque_rate = values.real("torque-rate");
     options.ramp = values.real("ramp");
+    const std::string& on_fault = values.text("on-fault");
+    if (on_fault == "switch-off") options.on_fault = control::OnFault::switch_off;
+    if (on_fault == "end") options.on_fault = control::OnFault::end;
     options.hold = values.real("hold");
     if (values.has("deadline-iterations")) options.deadline.iterations = values.integer("deadline-iterations");
     if (values.has("torque-limits-priority")) options.limits_priority = values.integer("torque-limits-priority");

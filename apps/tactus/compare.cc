@@ -179,7 +179,7 @@ int compare(const CompareArguments& arguments, bool json) {
     if (back_ends.empty()) sampling.push_back(&sampler);
     back_ends.push_back({{"backend", label}, {"closed_loop", closedLoop(session, label, sampling, interrupt.stop())}});
     if (interrupt.stop()) throw Interrupted();
-    if (back_ends.back()["closed_loop"]["status"] != "done" || !session.statistics().unusableTasks().empty()) {
+    if (back_ends.back()["closed_loop"]["status"] != "done" || session.faultCode() != exit_done) {
       code = exit_numerical;
     }
   }

@@ -114,7 +114,7 @@ std::string runInto(const std::string& folder, Session& session, const Interrupt
 
 /// A run in which tasks lost their numbers is no example for later ones.
 void refuseUnusable(const Session& session) {
-  if (!session.statistics().unusableTasks().empty()) {
+  if (session.faultCode() != exit_done) {
     throw runtime::PlantError(session.warnings().front() + "; such a run is not recorded");
   }
 }

@@ -28,7 +28,7 @@ struct Keepers {
 
 int exitCodeOf(const Session& session, runtime::Ending ending) {
   switch (ending) {
-    case runtime::Ending::done: return session.statistics().unusableTasks().empty() ? exit_done : exit_numerical;
+    case runtime::Ending::done: return session.faultCode();
     case runtime::Ending::interrupted: return exit_interrupted;
     case runtime::Ending::plant_error: return exit_numerical;
     case runtime::Ending::tick_error: return exit_plugin;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/tactus/command.h"
 #include "dsl/codes.h"
 #include "dsl/compile.h"
+#include "framework/control/element_values.h"
 #include "framework/runtime/feature_truth.h"
 
 namespace tactus::app {
@@ -114,6 +116,9 @@ std::vector<control::Metric> Session::metrics() const {
 
 std::vector<std::string> Session::warnings() const {
   std::vector<std::string> warnings = statistics_.warnings();
+  for (const control::SwitchedOff& fault : controller_->switchedOff())
+    warnings.push_back("task '" + fault.task + "' was switched off at t = " + control::formatNumber(fault.time) + " s: " +
+                       fault.reason);
   const std::vector<control::Metric> figures = metrics();
   for (const dsl::TargetDescription& target : stack_.run.targets) {
     const bool known = std::any_of(figures.begin(), figures.end(),
@@ -121,6 +126,12 @@ std::vector<std::string> Session::warnings() const {
     if (!known) warnings.push_back("the target '" + target.metric + "' names no figure of this run");
   }
   return warnings;
+}
+
+int Session::faultCode() const {
+  const auto& off = controller_->switchedOff();
+  if (std::any_of(off.begin(), off.end(), [](const control::SwitchedOff& fault) { return fault.threw; })) return exit_plugin;
+  return off.empty() && statistics_.unusableTasks().empty() ? exit_done : exit_numerical;
 }
 
 std::string Session::backEndName() const { return stack_.back_end.row().name; }

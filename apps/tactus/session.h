@@ -46,6 +46,10 @@ class Session {
   /// What the reader of the figures must know: ticks that fell back and the task that made them, targets of no figure.
   std::vector<std::string> warnings() const;
 
+  /// The exit code that faults of tasks call for: exit_plugin when one threw and was switched off, exit_numerical when
+  /// the numbers of one were none, exit_done without a fault.
+  int faultCode() const;
+
   const dsl::Stack& stack() const { return stack_; }
   control::Controller& controller() { return *controller_; }
   const control::Controller& controller() const { return *controller_; }

@@ -22,6 +22,11 @@ bool isUsable(const TickTask& task) {
          (!task.has_acceleration || isUsable(task.acceleration.head(task.rows)));
 }
 
+/// Numbers that no back end can work with.
+struct NoNumbers : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Runs the step of one part of the stack, "task 'hold'"; what it throws becomes a TickError that names the part.
 template <class Step, class Name>
 void guarded(TickError::Part part, double time, Step step, Name name) {
@@ -179,7 +184,7 @@ void Controller::assembleProblem(const Tick& tick) {
       NamedTask& named = level.tasks[k];
       TickTask& rows = problem_.levels[i].tasks[k];
       if (named.activation.advance(tick.time, tick.dt)) shaper_.startTransfer(named.activation.ramp());
-      if (!level.activation.stands() || !named.activation.stands()) {
+      if (named.switched_off || !level.activation.stands() || !named.activation.stands()) {
         rows.rows = 0;
         continue;
       }
@@ -197,7 +202,40 @@ void Controller::fillRows(const Tick& tick, NamedTask& named, TickTask& rows) {
     named.task->update(tick, rows);
     checkRows(rows, named.task->capacity(), problem_.dof);
   };
-  guarded(TickError::Part::task, tick.time, update, [&] { return "task '" + named.name + "'"; });
+  constexpr const char* no_numbers = "it gave numbers that are not finite, or too large to work with";
+  if (options_.on_fault == OnFault::fall_back) {
+    guarded(TickError::Part::task, tick.time, update, [&] { return "task '" + named.name + "'"; });
+    return;
+  }
+  const auto judged = [&] {
+    update();
+    if (!isUsable(rows.J()) || !isUsable(rows.F())) throw NoNumbers(no_numbers);
+    if (rows.has_acceleration && !isUsable(rows.acceleration.head(rows.rows))) throw NoNumbers(no_numbers);
+  };
+  if (options_.on_fault == OnFault::end) {
+    guarded(TickError::Part::task, tick.time, judged, [&] { return "task '" + named.name + "'"; });
+    return;
+  }
+  try {
+    judged();
+  } catch (const NoNumbers& fault) {
+    switchOff(tick, named, rows, fault.what(), false);
+  } catch (const std::exception& fault) {
+    switchOff(tick, named, rows, fault.what(), true);
+  } catch (...) {
+    switchOff(tick, named, rows, "it threw something that is not a std::exception", true);
+  }
+}
+
+// Its rows are made anew: it may have left them in any shape.
+void Controller::switchOff(const Tick& tick, NamedTask& named, TickTask& rows, const std::string& reason, bool threw) {
+  named.switched_off = true;
+  TickTask clean(named.name, named.task->capacity(), problem_.dof);
+  clean.relation = named.task->relation();
+  clean.contact = named.task->isContact();
+  rows = std::move(clean);
+  switched_off_.push_back({named.name, tick.time, reason, threw});
+  shaper_.startTransfer(options_.ramp);
 }
 
 Controller::Place Controller::placeOf(std::string_view task) const {

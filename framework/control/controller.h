@@ -26,6 +26,7 @@ struct NamedTask {
   std::string name;
   std::unique_ptr<Task> task;
   Activation activation = {};
+  bool switched_off = false;                                       ///< by a fault of its own, for good
 };
 struct Level {
   int priority = 1;
@@ -34,12 +35,28 @@ struct Level {
   Activation activation = {};                                      ///< of all its tasks, besides their own
 };
 
+/// What becomes of a task that throws, breaks its promise, or gives numbers that are none.
+enum class OnFault {
+  fall_back,                                                       ///< throwing ends the run; numbers make the tick fall back
+  switch_off,                                                      ///< it takes no part any more; the rest goes on
+  end                                                              ///< both end the run
+};
+
 struct ControllerOptions {
   double torque_rate = std::numeric_limits<double>::infinity();    ///< 1/s: of a joint's effort limit
   double ramp = 0.1;                                               ///< s, of setWeight, setPriority, setBackEnd
   double hold = 0.02;                                              ///< s, that last good values stand in
   Deadline deadline = {};                                          ///< of every back end that it is given
   std::optional<int> limits_priority = {};                         ///< TorqueLimits::priority
+  OnFault on_fault = OnFault::fall_back;
+};
+
+/// A task that was switched off by OnFault::switch_off.
+struct SwitchedOff {
+  std::string task;
+  double time = 0;                                                 ///< s
+  std::string reason;
+  bool threw = false;                                              ///< else its numbers were none
 };
 
 /// A task, signal or back end that threw, or broke its promise, in a tick; the message names it and the time.
@@ -120,6 +137,8 @@ class Controller {
   const std::vector<NamedSignal>& signals() const { return signals_; }
   const std::vector<Level>& levels() const { return levels_; }
   const Activation& activationOf(std::string_view task) const;
+  /// In the order in which it happened.
+  const std::vector<SwitchedOff>& switchedOff() const { return switched_off_; }
 
  private:
   struct Place {
@@ -133,6 +152,7 @@ class Controller {
   void bearWeight(const Sensed& sensed);
   void assembleProblem(const Tick& tick);
   void fillRows(const Tick& tick, NamedTask& named, TickTask& rows);
+  void switchOff(const Tick& tick, NamedTask& named, TickTask& rows, const std::string& reason, bool threw);
   /// The torque that is wanted, and whose it is.
   void chooseTorque();
   void applyTorque();
@@ -153,6 +173,7 @@ class Controller {
   TorqueShaper shaper_;
   Eigen::VectorXd wanted_;                                         // τ*
   Eigen::VectorXd last_solved_;                                    // applied in the last tick that was solved
+  std::vector<SwitchedOff> switched_off_;
   double unsolved_for_ = std::numeric_limits<double>::infinity();  // s
   bool bore_weight_ = false;                                       // the last tick's source was `gravity`
 };

@@ -103,6 +103,46 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+/// The stack with the faulty task and `on-fault`, run into a folder of its own.
+struct SwitchedRun {
+  explicit SwitchedRun(const std::string& fault, const std::string& on_fault) {
+    std::string text = contentOf(faultyStack(folder, fault));
+    const std::string controller = "<controller ";
+    text.insert(text.find(controller) + controller.size(), "on-fault=\"" + on_fault + "\" ");
+    const std::string stack = folder.file("switched.xml");
+    runtime::writeFile(stack, text);
+    outcome = tactus({"run", stack, "--plugin", kPlugin, "--out", folder.file("run")});
+    run = nlohmann::json::parse(contentOf(folder.file("run/run.json")));
+  }
+  TemporaryFolder folder;
+  Outcome outcome;
+  nlohmann::json run;
+};
+
+/// The run without the task is the rest's; the torque makes no jump where it goes.
+TEST(FaultyTask, IsSwitchedOffAndTheRestGoesOnWhereTheStackSaysSo) {
+  for (const auto& [fault, code, reason] :
+       {std::tuple{"throw", 4, "the licence server is on holiday"}, {"nan", 5, "it gave numbers that are not finite"},
+        {"rows", 4, "it fills 5 rows, but announced at most 1"}, {"resize", 4, "it changed the size of its rows"}}) {
+    SCOPED_TRACE(fault);
+    const SwitchedRun switched(fault, "switch-off");
+    EXPECT_EQ(switched.outcome.exit_code, code) << switched.outcome.err;
+    EXPECT_EQ(switched.run["status"], "done");
+    EXPECT_EQ(switched.run["ticks"]["fallback"], 0);
+    EXPECT_EQ(switched.run["ticks"]["total"], 1000);
+    EXPECT_THAT(switched.run["warnings"][0].get<std::string>(),
+                HasSubstr(std::string("task 'imp' was switched off at t = 0.021 s: ") + reason));
+    EXPECT_THAT(switched.outcome.err, HasSubstr("warning: task 'imp' was switched off at t = 0.021 s"));
+  }
+}
+
+TEST(FaultyTask, EndsTheRunWhereTheStackSaysSo) {
+  const SwitchedRun ended("nan", "end");
+  EXPECT_EQ(ended.outcome.exit_code, 4);
+  EXPECT_EQ(ended.run["status"], "tick-error");
+  EXPECT_THAT(ended.outcome.err, HasSubstr("task 'imp' failed at t = 0.021 s: it gave numbers that are not finite"));
+}
+
 TEST(FaultyTask, ThatAnnouncesNoSensibleNumberOfRowsIsRefused) {
   const FaultyRun faulty("capacity");
   EXPECT_EQ(faulty.outcome.exit_code, 3);
