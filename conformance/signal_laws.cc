@@ -26,8 +26,10 @@ class SignalBench {
     bench_.endTick();
   }
   const control::Signal& signal() const { return bench_.signal(subject_.name); }
-  const std::vector<control::PortRow>& ports() const {
-    return subject_.registry.elements().find(subject_.element)->ports;
+  std::vector<control::PortRow> ports() const {
+    for (const dsl::ElementInstance& signal : subject_.stack.signals)
+      if (signal.name == subject_.name) return signal.values.ports();
+    return {};
   }
   long allocations() const { return allocations_; }
 

@@ -83,6 +83,7 @@ class Maker {
   }
 
   dsl::ElementInstance instanceOf(const ElementRow& row, const std::string& name) {
+    if (needsChildren(row)) throw NoGuess{"<" + row.name + "> needs elements inside, and nothing tells which"};
     std::map<std::string, std::string> given{{"name", name}};
     for (const AttributeRow& attribute : row.attributes) {
       if (attribute.name == "name") continue;
@@ -117,7 +118,7 @@ class Maker {
   std::string port(const AttributeRow& attribute) {
     for (const ElementRow& row : registry_.elements().rows()) {
       for (const control::PortRow& port : row.ports) {
-        if (port.type != attribute.port_type) continue;
+        if (port.type != attribute.port_type || needsChildren(row)) continue;
         const std::string name = "signal-" + std::to_string(stack_.signals.size());
         addSignal(row, name);
         return name + "." + port.name;
@@ -136,7 +137,11 @@ class Maker {
       if (signal.name == name) return;
     for (const ElementRow& row : registry_.elements().rows())
       for (const control::PortRow& candidate : row.ports)
-        if (candidate.type == port_type && candidate.name == port) return addSignal(row, name);
+        if (candidate.type == port_type && candidate.name == port && !needsChildren(row)) return addSignal(row, name);
+  }
+
+  static bool needsChildren(const ElementRow& row) {
+    return std::any_of(row.children.begin(), row.children.end(), [](const control::ChildRow& child) { return child.min > 0; });
   }
 
   void addSignal(const ElementRow& row, const std::string& name = "specimen") {

@@ -316,6 +316,14 @@ LeastDistance::Outcome LeastDistance::addRow(const Rows& rows, int row, int side
   }
 }
 
+void LeastDistance::leaveActiveRows(Eigen::Ref<Eigen::VectorXd> u) {
+  if (active_count_ == 0) return;
+  const auto Q = Q_.topLeftCorner(n_, active_count_);
+  auto part = r_.head(active_count_);
+  part.noalias() = Q.transpose() * u;
+  u.noalias() -= Q * part;
+}
+
 // The point from the active rows alone: B x = d means Qᵀ x = R⁻ᵀ d, and x = c − Bᵀ λ.
 void LeastDistance::recompute(const Vector& c) {
   if (active_count_ == 0) {

@@ -51,6 +51,8 @@ class LeastDistance {
   auto x() const { return x_.head(n_); }
   /// Multipliers λ of all rows, x = c − Bᵀ λ: λ ≥ 0 at an upper bound, ≤ 0 at a lower one.
   auto multipliers() const { return multipliers_.head(m_); }
+  /// Takes out of a vector, in place, its part in the span of the active rows of the last solve.
+  void leaveActiveRows(Eigen::Ref<Eigen::VectorXd> u);
   int activeCount() const { return active_count_; }
   int active(int i) const { return active_[i]; }                   ///< row index
   int side(int i) const { return side_[i]; }                       ///< of active(i): +1 upper, −1 lower

@@ -6,6 +6,12 @@
 #include "framework/control/strips.h"
 
 namespace tactus::qp {
+namespace {
+
+constexpr double without_digits = 1e-3;                            // change of x, relative, by one more Newton step
+constexpr double smallest = 1e-9;                                  // N m or N: a length of x below it counts as this
+
+}  // namespace
 
 ActiveSet::ActiveSet(int variables, int dense, int objective_rows, int rows)
     : least_distance_(variables, rows),
@@ -131,6 +137,15 @@ control::KktResidual ActiveSet::residual(const Programme& programme) {
     gradient[i] /= i < dense ? R_(i, i) : programme.ridge[i];
   }
   residual.stationarity = std::max(residual.stationarity, gradient.norm() / size);
+  // Small there may be large in x, in directions that cost little and are free: then the answer has no digits in them.
+  least_distance_.leaveActiveRows(gradient);
+  for (int i = n - 1; i >= 0; --i) {
+    if (i < dense && programme.objective_rows > 0)
+      for (int k = i + 1; k < dense; ++k) gradient[i] -= R_(i, k) * gradient[k];
+    gradient[i] /= i < dense ? R_(i, i) : programme.ridge[i];
+  }
+  const double change = gradient.norm() / std::max(x.norm(), smallest);
+  if (change > without_digits) residual.stationarity = std::max(residual.stationarity, change);
 
   auto products = products_.head(m);
   products.setZero();

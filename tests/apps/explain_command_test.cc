@@ -82,8 +82,8 @@ TEST(ExplainCommand, TellsWhereAStacksValuesComeFrom) {
                                          "<level priority=\"2\"><posture class=\"soft\" ");
   const Outcome outcome = tactus({"explain", stack, "--set", "press=0.7"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      force          0.7 N +--set press=0.7, .*press.xml:12:75\n"));
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      damping        0.4 N m s/rad +[^ ]*press.xml:14:"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      force          0.7 N +--set press=0.7, .*stack.xml:12:73\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      damping        0.4 N m s/rad +[^ ]*stack.xml:14:"));
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    ramp           0.1 s +default\n"));
   EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    projection     [a-z]+ +default\n"));
 

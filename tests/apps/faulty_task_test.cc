@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "framework/runtime/csv_table.h"
+#include "framework/runtime/file_error.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {

@@ -73,6 +73,9 @@ class Installed : public ::testing::Test {
     EXPECT_TRUE(fs::exists(source + "/run/log.csv"));
     said = shell("TACTUS_PLUGIN_PATH=" + source + "/build " + tactus() + " check " + stack);
     EXPECT_EQ(said.exit_code, 0) << said.text;
+    said = shell(tactus() + " schema xsd --plugin " + library + " > " + source + "/stack.xsd && xmllint --noout --schema " +
+                 source + "/stack.xsd " + stack);
+    EXPECT_EQ(said.exit_code, 0) << said.text;
   }
 
   /// A new plugin 'acme' in a folder of this test.

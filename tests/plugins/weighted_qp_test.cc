@@ -187,10 +187,10 @@ TEST(WeightedQp, Law7OfFiveAndSixLevelsHoldsButForAFewWithoutDigits) {
   expectAgreement(19, deep, true, {.problems = 300, .own_failed = 10, .reference_failed = 10, .differ = 3});
 }
 
-// Known to fail: active-set says `ok` of this one, 60 % off.  Five levels at a ratio of 63 and a residual of 800 in the
-// strong rows: its stationarity, measured where a step's length is what it costs, is 4e-6, and the weakest direction
-// magnifies that beyond the answer.
-TEST(WeightedQp, DISABLED_AnAnswerWithoutDigitsInItsWeakDirectionsIsNotOk) {
+// Active-set once said `ok` of this one, 60 % off.  Five levels at a ratio of 63 and a residual of 800 in the strong rows:
+// its stationarity, measured where a step's length is what it costs, is 4e-6, and the weakest direction magnifies that
+// beyond the answer.
+TEST(WeightedQp, AnAnswerWithoutDigitsInItsWeakDirectionsIsNotOk) {
   ProblemSource source(13);
   for (int k = 0; k < 131; ++k) {
     limitedProblem(source, ordinary());
