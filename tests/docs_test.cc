@@ -181,7 +181,8 @@ std::vector<MessageSection> messageSections() {
 
 TEST(Docs, EveryMessageHasASnippetThatProvokesIt) {
   std::vector<std::string> wanted, found;
-  for (const tactus::dsl::Code& code : tactus::dsl::all_codes) wanted.push_back(std::string(code.id) + ": " + code.meaning);
+  for (const tactus::dsl::Code& code : tactus::dsl::all_codes)
+    wanted.push_back(std::string(code.id) + ": " + code.meaning);
   std::sort(wanted.begin(), wanted.end());
   int without = 0;
   for (const MessageSection& section : messageSections()) {
@@ -198,7 +199,8 @@ TEST(Docs, EveryMessageHasASnippetThatProvokesIt) {
       EXPECT_EQ(exit_code, code == "E070" ? 4 : 3) << section.heading << "\n" << said;
       EXPECT_NE(said.find("\"code\": \"" + code + "\""), std::string::npos) << section.heading << "\n" << said;
     } else {                                                       // only `dynamics` takes such a robot
-      EXPECT_EQ(shell(kProgram + " dynamics " + folder.file("robot.urdf"), &said), 0) << section.heading << "\n" << said;
+      const int exit_code = shell(kProgram + " dynamics " + folder.file("robot.urdf"), &said);
+      EXPECT_EQ(exit_code, 0) << section.heading << "\n" << said;
       EXPECT_NE(said.find("warning[" + code + "]"), std::string::npos) << section.heading << "\n" << said;
     }
   }
