@@ -7,9 +7,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "dsl/codes.h"
 #include "framework/runtime/csv_table.h"
 #include "tests/runtime/temporary_folder.h"
 
@@ -46,9 +48,13 @@ std::vector<std::string> blocks(const fs::path& page, const std::string& languag
   return found;
 }
 
-/// The blocks that hold a whole stack of elements that are always there.
+/// The page whose stacks are broken.
+const fs::path kMessages = fs::path(TACTUS_SOURCE_DIR) / "docs/messages.md";
+
+/// The blocks that hold a whole, valid stack of elements that are always there.
 std::vector<std::string> stacks(const fs::path& page) {
   std::vector<std::string> found;
+  if (page == kMessages) return found;
   for (const std::string& block : blocks(page, "xml")) {
     if (block.rfind("<stack", 0) == 0 && block.find("<plugin") == std::string::npos) found.push_back(block);
   }
@@ -139,6 +145,69 @@ TEST(Docs, EveryStackValidatesAgainstTheSchema) {
                                               "<posture name=\"rest\" stifness=\"1\"/></level></stack>");
   EXPECT_NE(shell("xmllint --noout --schema " + schema + " " + misspelled, &said), 0);
   EXPECT_NE(said.find("'stifness' is not allowed"), std::string::npos) << said;
+}
+
+/// What docs/messages.md says under a heading "## E012: …".
+struct MessageSection {
+  std::string heading;
+  std::map<std::string, std::string> files;                        ///< by name; the stack's is stack.xml
+  bool has_no_snippet = false;
+};
+
+/// A block is a file of the name that stands above it, `robot.urdf`:, and without one the stack.
+std::vector<MessageSection> messageSections() {
+  std::vector<MessageSection> sections;
+  std::ifstream in(kMessages);
+  const std::string stack = "stack.xml";
+  std::string name = stack, content;
+  bool inside = false;
+  for (std::string line; std::getline(in, line);) {
+    if (inside && line == "```") {
+      sections.back().files[name] = content;
+      name = stack;
+      content.clear();
+      inside = false;
+    } else if (inside) {
+      content += line + "\n";
+    } else if (line.rfind("## E", 0) == 0 || line.rfind("## W", 0) == 0) {
+      sections.push_back({line.substr(3), {}});
+    } else if (!sections.empty()) {
+      inside = line == "```xml";
+      if (line.rfind("No snippet: ", 0) == 0) sections.back().has_no_snippet = true;
+      if (line.size() > 3 && line.front() == '`' && line.substr(line.size() - 2) == "`:")
+        name = line.substr(1, line.size() - 3);
+    }
+  }
+  return sections;
+}
+
+TEST(Docs, EveryMessageHasASnippetThatProvokesIt) {
+  std::vector<std::string> wanted, found;
+  for (const tactus::dsl::Code& code : tactus::dsl::all_codes)
+    wanted.push_back(std::string(code.id) + ": " + code.meaning);
+  std::sort(wanted.begin(), wanted.end());
+  int without = 0;
+  for (const MessageSection& section : messageSections()) {
+    found.push_back(section.heading);
+    EXPECT_NE(section.has_no_snippet, !section.files.empty()) << section.heading;
+    if (section.has_no_snippet) ++without;
+    if (section.files.empty()) continue;
+    const std::string code = section.heading.substr(0, 4);
+    const tactus::testing::TemporaryFolder folder;
+    for (const auto& [name, content] : section.files) folder.write(name, content);
+    std::string said;
+    if (section.files.count("stack.xml")) {
+      const int exit_code = shell(kProgram + " check --strict --json " + folder.file("stack.xml"), &said);
+      EXPECT_EQ(exit_code, code == "E070" ? 4 : 3) << section.heading << "\n" << said;
+      EXPECT_NE(said.find("\"code\": \"" + code + "\""), std::string::npos) << section.heading << "\n" << said;
+    } else {                                                       // only `dynamics` takes such a robot
+      const int exit_code = shell(kProgram + " dynamics " + folder.file("robot.urdf"), &said);
+      EXPECT_EQ(exit_code, 0) << section.heading << "\n" << said;
+      EXPECT_NE(said.find("warning[" + code + "]"), std::string::npos) << section.heading << "\n" << said;
+    }
+  }
+  EXPECT_EQ(found, wanted);                                        // in the order of their numbers
+  EXPECT_LE(without, 7);
 }
 
 /// README's first stack settles: no torque is cut, and all back ends that it names agree.

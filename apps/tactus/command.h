@@ -51,5 +51,6 @@ void addGraph(CLI::App& program, Context& context);
 void addSchema(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
 void addNew(CLI::App& program, Context& context);
+void addCompletion(CLI::App& program, Context& context);
 
 }  // namespace tactus::app

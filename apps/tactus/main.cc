@@ -89,6 +89,7 @@ int runCommand(int argc, char** argv) {
   addSchema(app, context);
   addFormat(app, context);
   addMigrate(app, context);
+  addCompletion(app, context);
   // A misspelled command would otherwise be reported as a missing one.  Commands inherit this when they are added, so
   // it comes after them: what they do not know stays an error.
   app.require_subcommand(0, 1);

@@ -32,7 +32,8 @@ TEST(Usage, EveryCommandHasHelpWithExamples) {
                                                        {"report"},
                                                        {"explain"},
                                                        {"golden", "verify"},
-                                                       {"plugins", "list"}};
+                                                       {"plugins", "list"},
+                                                       {"completion"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = tactus(command);
