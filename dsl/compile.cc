@@ -316,7 +316,8 @@ class Compiler {
       try {
         const std::unique_ptr<control::BackEnd> back_end =
             registry_.makeBackEnd(control::makeValues(*registry_.elements().findBackEnd(name)));
-        if (able(back_end->abilities())) names += (names.empty() ? "" : ", ") + name;
+        if (!able(back_end->abilities())) continue;
+        names += (names.empty() ? "" : ", ") + name + (name == stack_.back_end.row().name ? " with its default options" : "");
       } catch (const std::exception&) {                            // one that needs options: nothing is known of it
       }
     }

@@ -23,6 +23,13 @@ std::string indentBelow(const std::string& line, int column) {
   return indent;
 }
 
+/// A stack may come from anybody: what would steer the terminal is shown as '?'.
+std::string harmless(std::string text) {
+  for (char& c : text)
+    if ((static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n') || c == 0x7F) c = '?';
+  return text;
+}
+
 std::string summary(const std::vector<Diagnostic>& diagnostics) {
   std::string text;
   for (const Diagnostic& diagnostic : diagnostics) text += render(diagnostic);
@@ -51,7 +58,7 @@ std::string render(const Diagnostic& diagnostic) {
   for (const description::Place& place : diagnostic.included_from)
     where += (where.empty() ? "" : ", ") + ("included from " + inPlace(place));
   if (!where.empty()) text += "  " + where + "\n";
-  return text;
+  return harmless(std::move(text));
 }
 
 InvalidStack::InvalidStack(std::vector<Diagnostic> found)

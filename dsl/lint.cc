@@ -56,8 +56,8 @@ long rankOf(const MatrixXd& rows) {
 
 class Linter {
  public:
-  Linter(const Stack& stack, const control::Registry& registry)
-      : stack_(stack), controller_(compile(stack, registry)), cache_(controller_->model()) {
+  Linter(const Stack& stack, const control::Registry& registry, double plant_step)
+      : stack_(stack), plant_step_(plant_step), controller_(compile(stack, registry)), cache_(controller_->model()) {
     sensed_.q = stack.start_q;
     sensed_.qd = VectorXd::Zero(stack.start_q.size());
     sensed_.time = long_after_start;
@@ -112,8 +112,9 @@ class Linter {
       const control::LevelXray& granted = xray.levels[i];
       if (granted.wanted > 0 && granted.granted == 0)
         say(code::dead_level, level.element,
-            "level " + std::to_string(level.priority) + " can do nothing where the robot starts: higher levels take all " +
-                counted(granted.wanted, "direction", "directions") + " that it asks for");
+            "level " + std::to_string(level.priority) + " can do nothing where the robot starts: higher levels take " +
+                (granted.wanted == 1 ? "the one direction" : "all " + std::to_string(granted.wanted) + " directions") +
+                " that it asks for");
       for (std::size_t k = 0; k < level.tasks.size(); ++k) {
         holdsAll(i, k);
         for (std::size_t other = 0; other < k; ++other) compareRows(i, other, k);
@@ -140,7 +141,7 @@ class Linter {
     const auto& tasks = stack_.levels[level].tasks;
     say(code::duplicate_rows, tasks[second],
         "'" + tasks[second].name + "' and '" + tasks[first].name + "' of the same level ask for the same " +
-            counted(shared, "direction", "directions") + ": neither gets there alone");
+            (shared == 1 ? "direction" : std::to_string(shared) + " directions") + ": neither gets there alone");
   }
 
   /// Each desired link touched once, in directions that mean nothing: so many independent rows can there be.
@@ -231,7 +232,7 @@ class Linter {
     const double value = largestEigenvalue(stiffness, damping, dt);
     if (value <= 1 + growth) return;
     std::string cure = "; lower its damping or stiffness";
-    for (double rate = 2; rate <= 64; rate *= 2) {
+    for (double rate = 2; rate <= 64 && dt / rate >= (1 - 1e-9) * plant_step_; rate *= 2) {
       // What grows slowly in a tick grows as much in many short ones.
       if (largestEigenvalue(stiffness, damping, dt / rate) > 1 + growth) continue;
       cure += ", or tick at " + std::to_string(std::lround(rate / dt)) + " Hz";
@@ -304,6 +305,7 @@ class Linter {
   }
 
   const Stack& stack_;
+  double plant_step_;                                              // s
   std::unique_ptr<control::Controller> controller_;
   dynamics::DynamicsCache cache_;
   control::Sensed sensed_;
@@ -312,6 +314,8 @@ class Linter {
 
 }  // namespace
 
-std::vector<Diagnostic> lint(const Stack& stack, const control::Registry& registry) { return Linter(stack, registry).run(); }
+std::vector<Diagnostic> lint(const Stack& stack, const control::Registry& registry, double plant_step) {
+  return Linter(stack, registry, plant_step).run();
+}
 
 }  // namespace tactus::dsl

@@ -18,7 +18,8 @@ namespace tactus::dsl {
 ///         robot-and-task in discrete time, one tick of semi-implicit Euler
 ///   W025  a place that the link which should reach it cannot come near
 ///   W026  a phase that no other leads to
-/// Builds the controller and ticks it once.  Throws InvalidStack as compile() does.
-std::vector<Diagnostic> lint(const Stack& stack, const control::Registry& registry);
+/// Builds the controller and ticks it once.  `plant_step`, s, as in ReadOptions: no faster rate is advised.  Throws
+/// InvalidStack as compile() does.
+std::vector<Diagnostic> lint(const Stack& stack, const control::Registry& registry, double plant_step = 0);
 
 }  // namespace tactus::dsl

@@ -40,7 +40,9 @@ class StackReader {
     stack_.file = file;
   }
 
-  Stack run(std::vector<Diagnostic>* warnings) {
+  const std::vector<Diagnostic>& warnings() const { return findings_.warnings(); }
+
+  Stack run() {
     StackDocument document = readDocument(stack_.file, options_.set, options_.include_folders, findings_);
     stack_.files = std::move(document.files);
     stack_.included_from = std::move(document.included_from);
@@ -61,7 +63,6 @@ class StackReader {
     checkReferences(root);
     findings_.throwErrors();
     keepElements(root, 0);
-    if (warnings) warnings->insert(warnings->end(), findings_.warnings().begin(), findings_.warnings().end());
     return std::move(stack_);
   }
 
@@ -213,8 +214,10 @@ class StackReader {
         level.priority = element->values.integer("priority");
         if (!stack_.levels.empty() && level.priority <= stack_.levels.back().priority)
           findings_.errorAtValue(code::level_order, *element->xml, *element->xml->attribute("priority"),
-                                 "priority " + std::to_string(level.priority) + " stands after priority " +
-                                     std::to_string(stack_.levels.back().priority) +
+                                 (level.priority == stack_.levels.back().priority
+                                      ? "priority " + std::to_string(level.priority) + " is that of the level before"
+                                      : "priority " + std::to_string(level.priority) + " stands after priority " +
+                                            std::to_string(stack_.levels.back().priority)) +
                                      ": the levels of a stack rise strictly");
       }
       for (const CheckedElement& task : element->children)
@@ -333,7 +336,8 @@ class StackReader {
         std::vector<std::string> known;
         for (const auto& candidate : row.attributes) known.push_back(candidate.name);
         findings_.error(code::unknown_option, *element.xml,
-                        "back end '" + row.name + "' has no option '" + option + "'", nearestName(option, known));
+                        "back end '" + row.name + "' has no option '" + option + "', which the command line gives",
+                        nearestName(option, known));
         continue;
       }
       std::string error;
@@ -442,7 +446,18 @@ class StackReader {
 
 Stack readStack(const std::string& file, control::Registry& registry, const ReadOptions& options,
                 std::vector<Diagnostic>* warnings) {
-  return StackReader(file, registry, options).run(warnings);
+  StackReader reader(file, registry, options);
+  const auto handOver = [&] {
+    if (warnings) warnings->insert(warnings->end(), reader.warnings().begin(), reader.warnings().end());
+  };
+  try {
+    Stack stack = reader.run();
+    handOver();
+    return stack;
+  } catch (const InvalidStack&) {
+    handOver();
+    throw;
+  }
 }
 
 }  // namespace tactus::dsl

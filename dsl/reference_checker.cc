@@ -100,6 +100,10 @@ void ReferenceChecker::checkWords(const CheckedElement& element, const Attribute
         say(code::bad_value, element, row, "'" + word + "' stands alone, with no other names", "", i);
       continue;
     }
+    if (row.type == ValueType::link && contains(namesOf(stack_.robot.link_groups), word)) {
+      say(code::unknown_link, element, row, "'" + word + "' is a group of links: one link is taken here");
+      continue;
+    }
     std::vector<std::string> candidates = names;
     candidates.insert(candidates.end(), row.choices.begin(), row.choices.end());
     say(unknown, element, row, "the robot has no " + what + " '" + word + "'", nearestName(word, candidates), i);

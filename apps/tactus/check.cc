@@ -6,6 +6,7 @@
 #include "dsl/compile.h"
 #include "dsl/lint.h"
 #include "framework/runtime/file_error.h"
+#include "sim/simbody_plant.h"
 
 namespace tactus::app {
 namespace {
@@ -35,7 +36,7 @@ Findings checkFile(Program& program, const StackOptions& options, bool strict) {
       dsl::compile(stack, program.registry());
       return findings;
     }
-    const std::vector<dsl::Diagnostic> remarks = dsl::lint(stack, program.registry());
+    const std::vector<dsl::Diagnostic> remarks = dsl::lint(stack, program.registry(), sim::PlantOptions().step);
     findings.warnings.insert(findings.warnings.end(), remarks.begin(), remarks.end());
     if (!findings.warnings.empty()) findings.exit_code = exit_invalid_stack;
   } catch (const dsl::InvalidStack& invalid) {
@@ -44,7 +45,7 @@ Findings checkFile(Program& program, const StackOptions& options, bool strict) {
   } catch (const runtime::FileError& error) {
     dsl::Diagnostic diagnostic;
     diagnostic.code = "E001";
-    diagnostic.message = error.what();
+    diagnostic.message = error.reason;
     diagnostic.place = {options.file, 1, 1};
     findings.errors.push_back(diagnostic);
     findings.exit_code = exit_files;

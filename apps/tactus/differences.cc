@@ -128,7 +128,7 @@ TickDifference differenceOf(const control::TickProblem& problem, const control::
   const Eigen::VectorXd apart = mass.matrixL().solve(other.torque - reference.torque);
   const Eigen::VectorXd length = mass.matrixL().solve(reference.torque);
   difference.distance = apart.norm();
-  difference.relative = difference.distance == 0 ? 0 : difference.distance / length.norm();
+  difference.relative = difference.distance == 0 ? 0 : difference.distance / std::max(length.norm(), leastTorque(problem));
   return difference;
 }
 

@@ -9,6 +9,7 @@
 #include "apps/tactus/program.h"
 #include "apps/tactus/stack_arguments.h"
 #include "apps/tactus/text.h"
+#include "dsl/codes.h"
 #include "dsl/element_text.h"
 #include "dsl/nearest_name.h"
 
@@ -73,6 +74,11 @@ int explain(const ExplainArguments& arguments, bool json) {
     if (row.name != arguments.type) continue;
     found.push_back(dsl::elementJson(row));
     out += (out.empty() ? "" : "\n") + dsl::elementText(row);
+  }
+  for (const dsl::Code& code : dsl::all_codes) {
+    if (arguments.type != code.id) continue;
+    found.push_back({{"code", code.id}, {"meaning", code.meaning}});
+    out = std::string(code.id) + ": " + code.meaning + "\ndocs/messages.md tells how it comes about and what to do\n";
   }
   if (found.empty()) {
     if (std::filesystem::is_directory(arguments.type))

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/tactus/conflict_json.h"
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/progress.h"
 #include "apps/tactus/run_folder.h"
@@ -87,6 +88,13 @@ int explainTick(const ExplainTickArguments& arguments, bool json) {
   const control::Controller& controller = session.controller();
   const double time = static_cast<double>(tick) * period;
   ordered_json data = xrayToJson({time, "", controller.problem(), controller.solution()}, session);
+  std::string conflict;
+  if (controller.solution().status == control::Status::infeasible) {
+    const control::ConflictNames names{controller.model().jointNames(), taskPlaces(session.stack())};
+    const control::Conflict found = control::findConflict(controller.problem());
+    conflict = control::describe(found, controller.problem(), names);
+    data["conflict"] = conflictToJson(found, controller.problem(), names);
+  }
   int code = exit_done;
   if (of_run) {
     const std::string log = arguments.stack.file + "/log.csv";
@@ -103,7 +111,7 @@ int explainTick(const ExplainTickArguments& arguments, bool json) {
     std::cout << jsonText(data, 2) << "\n";
   } else {
     std::cout << session.stack().name << " with " << session.backEndName() << " at t = " << rounded(time, 6) << " s\n"
-              << xrayText({"x-ray", data});
+              << xrayText({"x-ray", data}) << (conflict.empty() ? "" : conflict + "\n");
   }
   return code;
 }

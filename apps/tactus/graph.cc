@@ -12,12 +12,14 @@ namespace tactus::app {
 namespace {
 
 struct GraphArguments : StackArguments {
-  std::string format = "svg";
+  std::string format;                                              ///< "" = by the file's name, svg without one
   std::string out;
 };
 
 int graph(const GraphArguments& arguments, bool json) {
-  const std::string form = json ? "json" : arguments.format;
+  const size_t dot = arguments.out.rfind('.');
+  const std::string by_name = dot == std::string::npos ? "svg" : arguments.out.substr(dot + 1);
+  const std::string form = json ? "json" : arguments.format.empty() ? by_name : arguments.format;
   if (form != "svg" && form != "dot" && form != "json")
     throw UsageError("a graph is 'svg', 'dot' or 'json', not '" + form + "'");
   Program program(arguments.plugins);
@@ -42,9 +44,8 @@ void addGraph(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("graph", "Draw which task and signal reads which port");
   const auto arguments = std::make_shared<GraphArguments>();
   command->add_option("STACK", arguments->stack.file, "The stack's XML file")->required()->type_name("");
-  command->add_option("--format", arguments->format, "svg, dot (for Graphviz) or json")
-      ->type_name("svg|dot|json")
-      ->capture_default_str();
+  command->add_option("--format", arguments->format, "svg, dot (for Graphviz) or json; not given: by the name of --out, or svg")
+      ->type_name("svg|dot|json");
   command->add_option("--out", arguments->out, "Write it to this file instead of printing")->type_name("FILE");
   command->add_option("--set", arguments->stack.set, "Give a <parameter> of the stack another value")
       ->type_name("NAME=VALUE")

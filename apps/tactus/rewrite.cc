@@ -64,13 +64,13 @@ int migrate(const MigrateArguments& arguments) {
   for (const dsl::Diagnostic& change : migration.changes) std::cerr << dsl::render(change) << "\n";
   if (migration.changes.empty()) std::cerr << arguments.stack << ": nothing to rewrite\n";
   for (const auto& [file, text] : migration.files) {
-    if (arguments.write) {
-      runtime::writeFile(file, text);
-      std::cerr << "written: " << file << "\n";
-    } else {
-      std::cout << text;
-    }
+    if (arguments.write) runtime::writeFile(file, text);
+    if (arguments.write || file != arguments.stack)
+      std::cerr << (arguments.write ? "written: " : "would change, too: ") << file << "\n";
   }
+  if (arguments.write) return exit_done;
+  const auto changed = migration.files.find(arguments.stack);
+  std::cout << (changed == migration.files.end() ? runtime::readFile(arguments.stack) : changed->second);
   return exit_done;
 }
 

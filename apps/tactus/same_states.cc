@@ -76,6 +76,14 @@ double relativeViolation(const control::TickProblem& problem, const control::Tic
   return worst;
 }
 
+double leastTorque(const control::TickProblem& problem) {
+  constexpr double share = 1e-9;                                   // of what the actuators could do
+  if (!problem.torque_limits) return 0;
+  const VectorXd range = 0.5 * (problem.torque_limits->upper - problem.torque_limits->lower);
+  const double length = norm(Eigen::LLT<Eigen::MatrixXd>(problem.mass_matrix), range);
+  return std::isfinite(length) ? share * length : 0;
+}
+
 TorqueDifference compareTorques(const std::vector<control::TickProblem>& problems, const Answers& reference,
                                 const Answers& other) {
   TorqueDifference difference;
@@ -85,7 +93,7 @@ TorqueDifference compareTorques(const std::vector<control::TickProblem>& problem
     if (a.size() == 0 || b.size() == 0) continue;
     const Eigen::LLT<Eigen::MatrixXd> mass(problems[i].mass_matrix);
     const double distance = norm(mass, b - a), length = norm(mass, a);
-    const double relative = distance == 0 ? 0 : distance / length;
+    const double relative = distance == 0 ? 0 : distance / std::max(length, leastTorque(problems[i]));
     difference.mean += distance;
     difference.max = worse(difference.max, distance);
     difference.relative_mean += relative;

@@ -41,12 +41,16 @@ Answers solveAll(control::BackEnd& back_end, const std::vector<control::TickProb
 /// max(0, J M⁻¹ τ_l) for an inequality row, with τ_l = τ − scale · Σ JᵀF of level 1, over ‖J‖ ‖τ‖ in the M⁻¹ norm.
 double relativeViolation(const control::TickProblem& problem, const control::TickSolution& solution);
 
-/// Differences of torques in the M⁻¹ norm, ‖x‖² = xᵀ M⁻¹ x; `relative` is over the norm of the reference.
+/// Differences of torques in the M⁻¹ norm, ‖x‖² = xᵀ M⁻¹ x; `relative` is over the norm of the reference, or
+/// leastTorque where that is shorter.
 struct TorqueDifference {
   double mean = 0, max = 0;
   double relative_mean = 0, relative_max = 0;
   long compared = 0;                                               ///< problems that both solved
 };
+
+/// A length of torques, M⁻¹ norm, that is worth the name in this problem: below it there is only rounding.
+double leastTorque(const control::TickProblem& problem);
 
 TorqueDifference compareTorques(const std::vector<control::TickProblem>& problems, const Answers& reference,
                                 const Answers& other);

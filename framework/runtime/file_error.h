@@ -9,10 +9,11 @@ namespace tactus::runtime {
 class FileError : public std::runtime_error {
  public:
   FileError(const std::string& path, const std::string& reason)
-      : std::runtime_error(path + ": " + reason), path(path) {}
+      : std::runtime_error(path + ": " + reason), path(path), reason(reason) {}
   /// The reason is that of `error_number` (errno).
   FileError(const std::string& path, const std::string& action, int error_number);
   std::string path;
+  std::string reason;                                              ///< without the path
 };
 
 /// The whole content; throws FileError.

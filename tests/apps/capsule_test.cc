@@ -293,6 +293,8 @@ TEST(Capsule, OfARealStackThatHasNoSolutionNamesItsTask) {
   const std::string why = "task 'limits' (" + stack + ":12:23) and the torque limits of joints hip, knee and tip "
                           "contradict each other; any one of these would do: let 'limits' be accelerated by ";
   EXPECT_THAT(run.err, HasSubstr("warning: first infeasible at t = 0.001 s: " + why));
+  const std::vector<std::string> explain{"explain", stack, "--backend", "qp/nlopt", "--at", "0.001"};
+  EXPECT_THAT(tactus(explain).out, HasSubstr(why));
   const Outcome outcome = tactus({"solve", folder.file("run/capsule-1.json"), "--json"});
   EXPECT_EQ(outcome.exit_code, 5);
   EXPECT_THAT(outcome.err, HasSubstr("qp: reproduced to the bit\n"));

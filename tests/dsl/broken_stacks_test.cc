@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "included.xml"},
         Expected{"include_cycle.xml", "E039", 3, 18, "'include_cycle.xml' includes itself, directly or through others"},
         Expected{"level_order.xml", "E021", 13, 20,
-                 "priority 1 stands after priority 1: the levels of a stack rise strictly"},
+                 "priority 1 is that of the level before: the levels of a stack rise strictly"},
         Expected{"mismatched_tag.xml", "E003", 12, 3, "</levl> stands where </level> was expected"},
         Expected{"misplaced_element.xml", "E015", 6, 5, "<posture> must not stand in <scene>: it belongs in <level>"},
         Expected{"missing_attribute.xml", "E013", 11, 5, "<contact-force> needs the attribute 'on'"},

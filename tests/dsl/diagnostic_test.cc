@@ -15,6 +15,15 @@ Diagnostic example() {
   return diagnostic;
 }
 
+TEST(Diagnostic, NothingSteersTheTerminal) {
+  Diagnostic diagnostic = example();
+  diagnostic.source_line = "<a \x1B[31mbb\x7F=\"1\"/>";
+  diagnostic.message = "a \x07 bell";
+  const std::string text = render(diagnostic);
+  EXPECT_NE(text.find("a ? bell"), std::string::npos);
+  EXPECT_NE(text.find("<a ?[31mbb?=\"1\"/>"), std::string::npos);
+}
+
 TEST(Diagnostic, IsRenderedWithItsLineAndACaretBelowTheColumn) {
   EXPECT_EQ(render(example()),
             "f.xml:7:5: error[E012]: <a> has no attribute 'bb'\n"

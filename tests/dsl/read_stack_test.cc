@@ -206,7 +206,7 @@ TEST(ReadStack, TheCommandLineReplacesTheBackEnd) {
   options.backend = "all";
   options.backend_options = {{"projecton", "successive"}};
   EXPECT_THAT(errors(smallStack(level, controller), options),
-              ElementsAre("4:1 E038 back end 'all' has no option 'projecton' [projection]"));
+              ElementsAre("4:1 E038 back end 'all' has no option 'projecton', which the command line gives [projection]"));
   options.backend_options = {{"tolerance", "-1"}};
   EXPECT_THAT(
       errors(smallStack(level, controller), options),
