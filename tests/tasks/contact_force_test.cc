@@ -23,6 +23,27 @@ TEST(ContactForce, PressesAlongTheNormalOfEachHeldContact) {
   EXPECT_NEAR(task->error(), 0.3, 1e-12);
 }
 
+TEST(ContactForce, WithFrictionHoldsTheTangentsToo) {
+  TaskWorld world;
+  const auto task = world.make("contact-force", {{"on", "touch.held"}, {"force", "0.7"}, {"friction", "0.4"}});
+  auto rows = world.rowsFor(*task);
+  for (const Eigen::Vector3d& along : {Eigen::Vector3d(0.2, -0.1, -1), Eigen::Vector3d(-1, 0.1, 0)}) {
+    const Eigen::Vector3d normal = along.normalized();
+    const control::ContactRecord record = world.contactOn("index_distal", normal, 0.4);
+    world.sensed.contacts = {record};
+    world.feel();
+    task->update(world.tick(), rows);
+    ASSERT_EQ(rows.rows, 3);
+    EXPECT_EQ(rows.friction, 0.4);
+    EXPECT_EQ(Eigen::Vector3d(rows.F()), Eigen::Vector3d(0.7, 0, 0));
+    Eigen::MatrixXd J(3, world.model.dof());
+    world.cache.pointJacobian(record.link, record.point_W, J.topRows<3>());
+    // Three orthonormal directions, the first one the normal: the rows are those of the point, turned.
+    EXPECT_LT((rows.J().row(0) - normal.transpose() * J).norm(), 1e-12);
+    EXPECT_LT((rows.J().transpose() * rows.J() - J.transpose() * J).norm(), 1e-12);
+  }
+}
+
 TEST(ContactForce, FeedbackBacksOffOnOneSideOnlyAndNoLowerThanItsFloor) {
   TaskWorld world;
   const auto task = world.make("contact-force", {{"on", "touch.held"}, {"feedback", "2"}, {"feedback-threshold", "1"},
