@@ -9,7 +9,7 @@
 #include "framework/runtime/plugin_loader.h"
 #include "sim/simbody_plant.h"
 #include "tasks/register_tasks.h"
-#include "tests/dynamics/allocation_count.h"
+#include "conformance/allocation_count.h"
 #include "tests/runtime/temporary_folder.h"
 
 namespace tactus::testing {
@@ -39,9 +39,9 @@ class Tick : public ::testing::Test {
       between(*controller, k);
       const control::Sensed& sensed = plant.sense();
       largest_contacts = std::max(largest_contacts, sensed.contacts.size());
-      const long before = dynamics::allocationCount();
+      const long before = conformance::allocationCount();
       const Eigen::VectorXd& torque = controller->tick(sensed);
-      allocations += dynamics::allocationCount() - before;
+      allocations += conformance::allocationCount() - before;
       if (k > 0) largest_step = std::max(largest_step, ((torque - last).array() / effort.array()).abs().maxCoeff());
       last = torque;
       rate_limited += controller->record().rate_limited;

@@ -4,7 +4,7 @@
 
 #include "framework/dynamics/crba.h"
 #include "framework/dynamics/rnea.h"
-#include "tests/dynamics/allocation_count.h"
+#include "conformance/allocation_count.h"
 #include "tests/dynamics/random_state.h"
 
 // Analytic derivatives against central differences of fourth order of the functions themselves, on every kind of tree.
@@ -86,9 +86,9 @@ TEST(DynamicsDerivatives, OfForwardDynamics) {
 TEST(DynamicsDerivatives, TakeNoMemoryAfterConstruction) {
   onRandomStates(113, [](RandomState& state, Random&) {
     DynamicsDerivatives derivatives(state.model);
-    const long before = allocationCount();
+    const long before = conformance::allocationCount();
     derivatives.computeForward(state.q, state.qd, state.qdd, state.gravity_W, state.workspace);
-    EXPECT_EQ(allocationCount(), before);
+    EXPECT_EQ(conformance::allocationCount(), before);
   });
 }
 

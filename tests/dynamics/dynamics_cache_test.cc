@@ -9,7 +9,7 @@
 #include "framework/dynamics/crba.h"
 #include "framework/dynamics/forward_dynamics.h"
 #include "framework/dynamics/rnea.h"
-#include "tests/dynamics/allocation_count.h"
+#include "conformance/allocation_count.h"
 #include "tests/dynamics/random_state.h"
 
 namespace tactus::dynamics {
@@ -131,7 +131,7 @@ TEST(DynamicsCache, TakesNoMemoryAfterConstruction) {
     const Eigen::Vector3d point_W = test_robots::uniformVector3(random, 1);
     const int frame = static_cast<int>(state.model.frames().size()) - 1;
     double sum = 0;
-    const long before = allocationCount();
+    const long before = conformance::allocationCount();
     for (int tick = 0; tick < 3; ++tick) {
       state.q *= 1.001;
       cache.update(state.q, state.qd);
@@ -142,20 +142,20 @@ TEST(DynamicsCache, TakesNoMemoryAfterConstruction) {
              cache.pointVelocity(frame, point_W).sum() + cache.pointAccelerationBias(frame, point_W).sum() +
              cache.frameAccelerationBias(frame).sum();
     }
-    EXPECT_EQ(allocationCount(), before);
+    EXPECT_EQ(conformance::allocationCount(), before);
     EXPECT_TRUE(std::isfinite(sum));
   });
 }
 
 TEST(DynamicsCache, TheCounterCountsHereAndInTheFramework) {
   const Model model(test_robots::lwrAllegro());
-  long before = allocationCount();
+  long before = conformance::allocationCount();
   const Eigen::VectorXd heap = Eigen::VectorXd::Zero(1000);
   const std::vector<double> more(1000);
-  EXPECT_GE(allocationCount(), before + 2) << heap.size() << more.size();
-  before = allocationCount();
+  EXPECT_GE(conformance::allocationCount(), before + 2) << heap.size() << more.size();
+  before = conformance::allocationCount();
   const DynamicsCache cache(model);
-  EXPECT_GE(allocationCount(), before + 7) << cache.dof();
+  EXPECT_GE(conformance::allocationCount(), before + 7) << cache.dof();
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "framework/dynamics/crba.h"
 #include "framework/dynamics/dynamics_cache.h"
 #include "framework/dynamics/rnea.h"
-#include "tests/dynamics/allocation_count.h"
+#include "conformance/allocation_count.h"
 #include "tests/dynamics/random_state.h"
 
 // Forward dynamics undoes inverse dynamics on every kind of tree, pushed from outside or not; the sparse factor is that
@@ -121,9 +121,9 @@ TEST(ForwardDynamics, TakesNoMemoryAfterConstruction) {
     const ExternalForces external = randomForces(state, random);
     ForwardDynamics forward(state.model);
     Eigen::VectorXd qdd(state.model.dof());
-    const long before = allocationCount();
+    const long before = conformance::allocationCount();
     forward.compute(state.q, state.qd, state.qdd, state.gravity_W, state.workspace, qdd, &external);
-    EXPECT_EQ(allocationCount(), before);
+    EXPECT_EQ(conformance::allocationCount(), before);
   });
 }
 

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "framework/dynamics/dynamics_cache.h"
-#include "tests/dynamics/allocation_count.h"
+#include "conformance/allocation_count.h"
 #include "tests/dynamics/random_state.h"
 
 // Laws of a generalised inverse on contact rows of random robots, repeated and badly scaled rows included.
@@ -161,10 +161,10 @@ TEST(OperationalSpace, TakesNoMemoryAfterConstruction) {
     const Eigen::MatrixXd L = randomFactor(random, dof);
     const Rows many = randomRows(random, dof, std::min(dof, 8), 4), few = randomRows(random, dof, 2, 0);
     OperationalSpace space(12, dof);
-    const long before = allocationCount();
+    const long before = conformance::allocationCount();
     space.compute(many.J, L);
     space.compute(few.J, L);
-    EXPECT_EQ(allocationCount(), before);
+    EXPECT_EQ(conformance::allocationCount(), before);
   }
 }
 

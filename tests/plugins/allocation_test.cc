@@ -7,17 +7,17 @@
 #include "plugins/hqp/hqp.h"
 #include "plugins/null-space/null_space.h"
 #include "plugins/qp/solvers.h"
-#include "tests/dynamics/allocation_count.h"
+#include "conformance/allocation_count.h"
 #include "tests/plugins/random_problem.h"
 
 namespace tactus::null_space {
 namespace {
 
 TEST(Allocation, TheCountSeesBothKindsOfMemory) {
-  const long before = dynamics::allocationCount();
+  const long before = conformance::allocationCount();
   const auto one = std::make_unique<int>(1);
   const Eigen::VectorXd two(50);
-  EXPECT_GE(dynamics::allocationCount(), before + 2);
+  EXPECT_GE(conformance::allocationCount(), before + 2);
 }
 
 TEST(Allocation, ASolveOfTheCascadeTakesNone) {
@@ -32,14 +32,14 @@ TEST(Allocation, ASolveOfTheCascadeTakesNone) {
         NullSpace back_end({.cascade = cascade, .inequalities = inequalities, .rank = rank});
         control::TickSolution solution;
         back_end.prepare(problem, solution);
-        const long before = dynamics::allocationCount();
+        const long before = conformance::allocationCount();
         back_end.solve(problem, solution);
         for (control::TickLevel& level : problem.levels)
           for (control::TickTask& task : level.tasks) task.rows /= 2;
         back_end.solve(problem, solution);
         problem.mass_matrix(0, 0) = -1;
         back_end.solve(problem, solution);
-        ASSERT_EQ(dynamics::allocationCount(), before);
+        ASSERT_EQ(conformance::allocationCount(), before);
         EXPECT_EQ(solution.status, control::Status::failed);
       }
 }
@@ -54,14 +54,14 @@ void expectNoAllocation(const std::function<std::unique_ptr<control::BackEnd>()>
     control::TickSolution solution;
     back_end->prepare(problem, solution);
     if (k % 5 == 0) back_end->setDeadline({.iterations = 3});
-    const long before = dynamics::allocationCount();
+    const long before = conformance::allocationCount();
     back_end->solve(problem, solution);
     for (control::TickLevel& level : problem.levels)
       for (control::TickTask& task : level.tasks)
         if (!task.friction) task.rows = (task.rows + 1) / 2;
     back_end->solve(problem, solution);
     back_end->solve(problem, solution);
-    ASSERT_EQ(dynamics::allocationCount(), before) << k;
+    ASSERT_EQ(conformance::allocationCount(), before) << k;
   }
 }
 

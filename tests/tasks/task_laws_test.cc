@@ -9,7 +9,7 @@
 #include <random>
 #include <sstream>
 
-#include "tests/dynamics/allocation_count.h"
+#include "conformance/allocation_count.h"
 #include "tests/tasks/task_world.h"
 
 namespace tactus::test {
@@ -165,10 +165,10 @@ TEST_P(TaskLaws, AnUpdateAllocatesNothing) {
   RandomStates states(3);
   for (int k = 0; k < 50; ++k) {
     states.apply(world);
-    const long before = dynamics::allocationCount();
+    const long before = conformance::allocationCount();
     world.touch->update(world.tick());
     task->update(world.tick(), rows);
-    ASSERT_EQ(dynamics::allocationCount() - before, 0);
+    ASSERT_EQ(conformance::allocationCount() - before, 0);
   }
 }
 
