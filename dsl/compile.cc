@@ -6,6 +6,8 @@
 #include "dsl/codes.h"
 #include "dsl/nearest_name.h"
 #include "dsl/source_text.h"
+#include "framework/control/random.h"
+#include "framework/runtime/file_error.h"
 
 namespace tactus::dsl {
 namespace {
@@ -82,15 +84,110 @@ class CompileErrors {
   std::vector<Diagnostic> found_;
 };
 
+/// Calls factories with what they may look at; what they refuse becomes an error at its place.
+class PartMaker {
+ public:
+  PartMaker(const Stack& stack, const control::Registry& registry)
+      : stack_(stack), registry_(registry), errors_(stack), period_(1 / stack.controller.values.real("rate")) {
+    try {
+      model_ = std::make_shared<const dynamics::Model>(stack_.robot);
+    } catch (const dynamics::ModelError& error) {
+      const Place place = error.place.line > 0 ? error.place : stack_.robot.place;
+      errors_.add(code::unfit_for_dynamics, place, 1, "", error.what());
+    }
+    errors_.throwIfAny();
+  }
+
+  /// Nothing of Made, and the reason in `errors()`, when the factory refuses.
+  template <class Factory>
+  auto make(const ElementInstance& element, Factory factory) -> std::optional<decltype(factory())> {
+    try {
+      return factory();
+    } catch (const SignalFailed&) {
+    } catch (const ElementError& error) {
+      errors_.addElementError(element, error);
+    } catch (const runtime::FileError&) {
+      throw;
+    } catch (const std::exception& error) {
+      errors_.addAt(code::refused_by_factory, element, "", error.what());
+    }
+    return std::nullopt;
+  }
+
+  std::vector<runtime::NamedSensor> makeSensors(const description::Scene& scene, std::uint64_t seed) {
+    std::vector<runtime::NamedSensor> sensors;
+    for (const ElementInstance& element : stack_.sensors) {
+      const control::SensorContext context(contextOf(element, noPorts), scene, control::seedOf(seed, element.name));
+      auto sensor = make(element, [&] { return registry_.makeSensor(context); });
+      if (!sensor) continue;
+      runtime::NamedSensor named{element.name, std::move(*sensor), {}};
+      for (const control::PortRow& port : element.values.ports()) {
+        const int count = named.sensor->count(port);
+        const bool scalar = port.type == control::PortType<double>::name;
+        if (scalar ? count != 1 : count < 1)
+          errors_.addAt(code::refused_by_factory, element, "",
+                        "sensor '" + element.name + "' says that its port '" + port.name + "', a " + port.type + ", has " +
+                            std::to_string(count) + " numbers");
+        named.rows.push_back({element.name, port.name, std::max(1, count), scalar});
+      }
+      sensors.push_back(std::move(named));
+    }
+    return sensors;
+  }
+
+  control::BuildContext contextOf(const ElementInstance& element, control::BuildContext::PortLookup ports,
+                                  control::BuildContext::TaskMaker tasks = {}) const {
+    return {element.values, stack_.robot, *model_, period_, std::move(ports), std::move(tasks)};
+  }
+
+  const Stack& stack() const { return stack_; }
+  const control::Registry& registry() const { return registry_; }
+  CompileErrors& errors() { return errors_; }
+  double period() const { return period_; }
+  const std::shared_ptr<const dynamics::Model>& model() const { return model_; }
+
+ private:
+  static const void* noPorts(const std::string& attribute, const std::string&, const std::string&) {
+    throw ElementError(attribute, "a sensor reads no ports");
+  }
+
+  const Stack& stack_;
+  const control::Registry& registry_;
+  CompileErrors errors_;
+  double period_;
+  std::shared_ptr<const dynamics::Model> model_;
+};
+
+/// The row of a port, where sensor or signal and port are there and the type is right; throws ElementError.
+const control::PortRow& portRow(const Stack& stack, const std::string& attribute, const std::string& reference,
+                                const std::string& type, std::vector<control::PortRow>& rows) {
+  const std::size_t dot = reference.find('.');
+  const std::string name = reference.substr(0, dot);
+  const std::string port = dot == std::string::npos ? "" : reference.substr(dot + 1);
+  const ElementInstance* source = stack.source(name);
+  if (!source) {
+    std::vector<std::string> names;
+    for (const ElementInstance* other : stack.sources())
+      for (const control::PortRow& row : other->values.ports()) names.push_back(other->name + "." + row.name);
+    throw ElementError(attribute, "the stack has no signal '" + name + "'", names);
+  }
+  rows = source->values.ports();
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& candidate) { return candidate.name == port; });
+  if (row == rows.end()) throw ElementError(attribute, "signal '" + name + "' has no port '" + port + "'");
+  if (row->type != type)
+    throw ElementError(attribute, "'" + reference + "' is a " + row->type + ", but a " + type + " is read here");
+  return *row;
+}
+
 /// Signals are made when a port first asks for them, so that they end up in dependency order.
 class Compiler {
  public:
   Compiler(const Stack& stack, const control::Registry& registry)
-      : stack_(stack), registry_(registry), errors_(stack), period_(1 / stack.controller.values.real("rate")) {}
+      : parts_(stack, registry), stack_(stack), registry_(registry), errors_(parts_.errors()) {}
 
   std::unique_ptr<control::Controller> run() {
-    makeModel();
     auto back_end = makeBackEnd();
+    makeReadings();
     for (const ElementInstance& signal : stack_.signals) {
       try {
         makeSignal(signal);
@@ -105,8 +202,9 @@ class Compiler {
     auto levels = makeLevels(back_end ? &back_end->abilities() : nullptr);
     errors_.throwIfAny();
     try {
-      return std::make_unique<control::Controller>(model_, std::move(signals_), std::move(levels), std::move(back_end),
-                                                   period_, stack_.gravity, controllerOptions());
+      return std::make_unique<control::Controller>(parts_.model(), std::move(signals_), std::move(levels),
+                                                   std::move(back_end), parts_.period(), stack_.gravity,
+                                                   controllerOptions(), std::move(readings_));
     } catch (const std::exception& error) {
       errors_.addAt(code::refused_by_factory, stack_.controller, "backend", error.what());
     }
@@ -117,14 +215,13 @@ class Compiler {
  private:
   enum class State { being_made, made, failed };
 
-  void makeModel() {
-    try {
-      model_ = std::make_shared<const dynamics::Model>(stack_.robot);
-    } catch (const dynamics::ModelError& error) {
-      const Place place = error.place.line > 0 ? error.place : stack_.robot.place;
-      errors_.add(code::unfit_for_dynamics, place, 1, "", error.what());
-    }
-    errors_.throwIfAny();
+  /// Where the numbers of the sensors will stand; the sensors themselves belong to the run.
+  void makeReadings() {
+    std::vector<control::ReadingRow> rows;
+    if (!stack_.sensors.empty())
+      for (runtime::NamedSensor& sensor : parts_.makeSensors(stack_.scene(stack_.run.seed), stack_.run.seed))
+        rows.insert(rows.end(), sensor.rows.begin(), sensor.rows.end());
+    readings_ = std::make_unique<control::Readings>(std::move(rows));
   }
 
   std::unique_ptr<control::BackEnd> makeBackEnd() {
@@ -144,41 +241,58 @@ class Compiler {
   }
 
   control::BuildContext contextOf(const ElementInstance& element) {
-    return {element.values, stack_.robot, *model_, period_,
-            [this, &element](const std::string& attribute, const std::string& reference, const std::string& type) {
-              return port(element, attribute, reference, type);
-            }};
+    return parts_.contextOf(
+        element,
+        [this, &element](const std::string& attribute, const std::string& reference, const std::string& type) {
+          return port(element, attribute, reference, type);
+        },
+        [this, &element](const std::string& task, const std::map<std::string, std::string>& attributes) {
+          return makeTaskFor(element, task, attributes);
+        });
   }
 
   const void* port(const ElementInstance& reader, const std::string& attribute, const std::string& reference,
                    const std::string& type) {
-    const std::size_t dot = reference.find('.');
-    const std::string name = reference.substr(0, dot);
-    const std::string port = dot == std::string::npos ? "" : reference.substr(dot + 1);
-    const auto found = std::find_if(stack_.signals.begin(), stack_.signals.end(),
-                                    [&](const ElementInstance& signal) { return signal.name == name; });
-    if (found == stack_.signals.end()) throw ElementError(attribute, "the stack has no signal '" + name + "'", names());
-    const std::vector<control::PortRow> rows = found->values.ports();
-    const auto row =
-        std::find_if(rows.begin(), rows.end(), [&](const auto& candidate) { return candidate.name == port; });
-    if (row == rows.end()) throw ElementError(attribute, "signal '" + name + "' has no port '" + port + "'");
-    if (row->type != type)
-      throw ElementError(attribute, "'" + reference + "' is a " + row->type + ", but a " + type + " is read here");
-    if (const auto state = states_.find(name); state != states_.end() && state->second == State::being_made) {
-      errors_.addAt(code::reference_cycle, reader, attribute,
-                    "signal '" + name + "' reads itself, directly or through others");
-      throw SignalFailed();
+    std::vector<control::PortRow> rows;
+    const control::PortRow& row = portRow(stack_, attribute, reference, type, rows);
+    const ElementInstance& source = *stack_.source(reference.substr(0, reference.find('.')));
+    const void* value = nullptr;
+    if (source.values.row().kind == control::ElementKind::sensor) {
+      value = readings_->port(source.name, row.name);
+    } else {
+      if (const auto state = states_.find(source.name); state != states_.end() && state->second == State::being_made) {
+        errors_.addAt(code::reference_cycle, reader, attribute,
+                      "signal '" + source.name + "' reads itself, directly or through others");
+        throw SignalFailed();
+      }
+      value = makeSignal(source).port(row.name);
     }
-    const void* value = makeSignal(*found).port(port);
-    if (!value) throw ElementError(attribute, "signal '" + name + "' gives nothing behind its port '" + port + "'");
+    if (!value)
+      throw ElementError(attribute, "signal '" + source.name + "' gives nothing behind its port '" + row.name + "'");
     return value;
   }
 
-  std::vector<std::string> names() const {
-    std::vector<std::string> found;
-    for (const ElementInstance& signal : stack_.signals)
-      for (const control::PortRow& port : signal.values.ports()) found.push_back(signal.name + "." + port.name);
-    return found;
+  /// A task of another element, for a controller that owns it.
+  std::unique_ptr<control::Task> makeTaskFor(const ElementInstance& owner, const std::string& element,
+                                             const std::map<std::string, std::string>& attributes) {
+    const control::ElementRow* row = registry_.elements().find(element);
+    if (!row || row->kind != control::ElementKind::task)
+      throw ElementError("", "it wants a task <" + element + ">, and there is no such task",
+                         registry_.names(control::ElementKind::task));
+    std::map<std::string, std::string> given = attributes;
+    given.try_emplace("name", owner.name);
+    try {
+      const control::ElementValues values = control::makeValues(*row, given);
+      return registry_.makeTask({values, stack_.robot, *parts_.model(), parts_.period(),
+                                 [&](const std::string& attribute, const std::string& reference, const std::string& type) {
+                                   return port(owner, attribute, reference, type);
+                                 }});
+    } catch (const ElementError& error) {
+      throw ElementError("", "its <" + element + ">: " +
+                                 (error.attribute.empty() ? "" : "attribute '" + error.attribute + "': ") + error.what());
+    } catch (const std::invalid_argument& error) {
+      throw ElementError("", "its <" + element + ">: " + error.what());
+    }
   }
 
   const control::Signal& makeSignal(const ElementInstance& element) {
@@ -187,34 +301,16 @@ class Compiler {
       throw SignalFailed();
     }
     states_[element.name] = State::being_made;
-    auto signal = make<control::Signal>(element, [&](const control::BuildContext& context) {
-      return registry_.makeSignal(context);
-    });
+    const control::BuildContext context = contextOf(element);
+    auto signal = parts_.make(element, [&] { return registry_.makeSignal(context); });
     if (!signal) {
       states_[element.name] = State::failed;
       throw SignalFailed();
     }
     states_[element.name] = State::made;
-    made_[element.name] = signal.get();
-    signals_.push_back({element.name, std::move(signal)});
+    made_[element.name] = signal->get();
+    signals_.push_back({element.name, std::move(*signal)});
     return *made_.at(element.name);
-  }
-
-  /// Null, and the reason in `errors_`, when the factory refuses.
-  template <class T, class Factory>
-  std::unique_ptr<T> make(const ElementInstance& element, Factory factory) {
-    try {
-      const control::BuildContext context = contextOf(element);
-      if (auto made = factory(context)) return made;
-      errors_.addAt(code::refused_by_factory, element, "",
-                    "the factory of <" + element.values.row().name + "> made nothing");
-    } catch (const SignalFailed&) {
-    } catch (const ElementError& error) {
-      errors_.addElementError(element, error);
-    } catch (const std::exception& error) {
-      errors_.addAt(code::refused_by_factory, element, "", error.what());
-    }
-    return nullptr;
   }
 
   control::ControllerOptions controllerOptions() const {
@@ -261,21 +357,31 @@ class Compiler {
       level.activation = activationOf(description.element);
       if (abilities) checkStrictness(description, levels.empty(), *abilities);
       for (const ElementInstance& element : description.tasks) {
-        auto task = make<control::Task>(element, [&](const control::BuildContext& context) {
-          return registry_.makeTask(context);
-        });
+        const control::BuildContext context = contextOf(element);
+        auto task = parts_.make(element, [&] { return registry_.makeTask(context); });
         if (!task) continue;
-        if (task->capacity() < 0) {
-          errors_.addAt(code::refused_by_factory, element, "",
-                        "the task says that it has at most " + std::to_string(task->capacity()) + " rows");
-          continue;
-        }
-        if (abilities) checkAbilities(element, *task, *abilities);
-        level.tasks.push_back({element.name, std::move(task), activationOf(element)});
+        if (abilities) checkAbilities(element, **task, *abilities);
+        level.tasks.push_back({element.name, std::move(*task), activationOf(element)});
       }
+      if (description.controller) fillOwned(*description.controller, abilities, level);
       levels.push_back(std::move(level));
     }
     return levels;
+  }
+
+  /// The level of a controller: its tasks, named after it.
+  void fillOwned(const ElementInstance& element, const control::Abilities* abilities, control::Level& level) {
+    const control::BuildContext context = contextOf(element);
+    auto made = parts_.make(element, [&] { return registry_.makeController(context); });
+    if (!made) return;
+    level.owner = {element.name, std::move(made->controller)};
+    for (control::OwnedTask& owned : made->tasks) {
+      if (abilities) checkAbilities(element, *owned.task, *abilities);
+      control::ActiveWhen when;
+      when.on = owned.active;
+      when.ramp = stack_.controller.values.real("ramp");
+      level.tasks.push_back({element.name + "." + owned.name, std::move(owned.task), control::Activation(when)});
+    }
   }
 
   void checkStrictness(const LevelDescription& level, bool first, const control::Abilities& abilities) {
@@ -326,11 +432,11 @@ class Compiler {
 
   std::string backEndName() const { return "back end '" + stack_.back_end.row().name + "'"; }
 
+  PartMaker parts_;
   const Stack& stack_;
   const control::Registry& registry_;
-  CompileErrors errors_;
-  double period_;
-  std::shared_ptr<const dynamics::Model> model_;
+  CompileErrors& errors_;
+  std::unique_ptr<control::Readings> readings_;
   std::map<std::string, State> states_;
   std::map<std::string, const control::Signal*> made_;
   std::vector<control::NamedSignal> signals_;
@@ -340,6 +446,39 @@ class Compiler {
 
 std::unique_ptr<control::Controller> compile(const Stack& stack, const control::Registry& registry) {
   return Compiler(stack, registry).run();
+}
+
+std::vector<runtime::NamedSensor> makeSensors(const Stack& stack, const control::Registry& registry,
+                                              const description::Scene& scene, std::uint64_t seed) {
+  PartMaker parts(stack, registry);
+  auto sensors = parts.makeSensors(scene, seed);
+  parts.errors().throwIfAny();
+  return sensors;
+}
+
+std::vector<std::unique_ptr<runtime::GuardedObserver>> makeRecorders(const Stack& stack,
+                                                                     const control::Registry& registry,
+                                                                     const control::Controller& controller,
+                                                                     const std::string& folder) {
+  PartMaker parts(stack, registry);
+  const auto port = [&](const std::string& attribute, const std::string& reference,
+                        const std::string& type) -> const void* {
+    std::vector<control::PortRow> rows;
+    const control::PortRow& row = portRow(stack, attribute, reference, type, rows);
+    const std::string name = reference.substr(0, reference.find('.'));
+    for (const control::NamedSignal& named : controller.signals())
+      if (named.name == name) return named.signal->port(row.name);
+    return controller.readings().port(name, row.name);
+  };
+  const bool switch_off = controller.options().on_fault == control::OnFault::switch_off;
+  std::vector<std::unique_ptr<runtime::GuardedObserver>> recorders;
+  for (const ElementInstance& element : stack.run.recorders) {
+    const control::RecorderContext context(parts.contextOf(element, port), controller, folder);
+    if (auto made = parts.make(element, [&] { return registry.makeRecorder(context); }))
+      recorders.push_back(std::make_unique<runtime::GuardedObserver>(element.name, std::move(*made), switch_off));
+  }
+  parts.errors().throwIfAny();
+  return recorders;
 }
 
 }  // namespace tactus::dsl

@@ -32,9 +32,7 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 std::string kindOf(const ChildRow& child) {
-  if (child.element == "@task") return "task";
-  if (child.element == "@signal") return "signal";
-  if (child.element == "@shape") return "shape";
+  if (child.element.starts_with('@')) return child.element.substr(1);
   return tag(child.element);
 }
 
@@ -58,6 +56,13 @@ std::vector<const CheckedElement*> CheckedElement::all(std::string_view name) co
 const CheckedElement* CheckedElement::first(std::string_view name) const {
   const auto found = all(name);
   return found.empty() ? nullptr : found.front();
+}
+
+control::ElementValues valuesWithin(const CheckedElement& element) {
+  control::ElementValues values = element.values;
+  values.place = element.xml->place();
+  for (const CheckedElement& child : element.children) values.children.push_back(valuesWithin(child));
+  return values;
 }
 
 CheckedElement ElementChecker::check(const XmlElement& stack) {

@@ -22,6 +22,9 @@ struct CheckedElement {
   const CheckedElement* first(std::string_view name) const;
 };
 
+/// Its values, with those of the elements inside.
+control::ElementValues valuesWithin(const CheckedElement& element);
+
 /// Holds a document against the element table: names, places, counts, attributes and the types of their values.
 /// What values refer to is checked later.
 class ElementChecker {

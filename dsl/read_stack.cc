@@ -55,8 +55,9 @@ class StackReader {
     const CheckedElement root = checker.check(*document.root);
     stack_.name = root.values.has("name") ? root.values.text("name") : nameFromFile(stack_.file);
     if (const auto* robot = root.first("robot")) readRobotOf(*robot);
-    if (const auto* scene = root.first("scene")) readScene(*scene, stack_, findings_);
-    readSignals(root);
+    if (const auto* scene = root.first("scene")) readScene(*scene, registry_, stack_, findings_);
+    stack_.sensors = readList(root, "sensors", ElementKind::sensor);
+    stack_.signals = readList(root, "signals", ElementKind::signal);
     readLevels(root);
     if (const auto* controller = root.first("controller")) readController(*controller);
     readRun(root);
@@ -171,14 +172,6 @@ class StackReader {
   }
 
   /// A named element; its name is taken from then on.
-  /// With those of the elements inside, which a task or a signal may have.
-  static ElementValues valuesWithin(const CheckedElement& element) {
-    ElementValues values = element.values;
-    values.place = element.xml->place();
-    for (const CheckedElement& child : element.children) values.children.push_back(valuesWithin(child));
-    return values;
-  }
-
   ElementInstance instanceOf(const CheckedElement& element) {
     ElementInstance instance{valuesWithin(element), "", element.xml->place(), element.xml->path()};
     if (!element.values.has("name")) return instance;
@@ -194,10 +187,13 @@ class StackReader {
     return instance;
   }
 
-  void readSignals(const CheckedElement& root) {
-    for (const CheckedElement* signals : root.all("signals"))
-      for (const CheckedElement& signal : signals->children)
-        if (signal.row->kind == ElementKind::signal) stack_.signals.push_back(instanceOf(signal));
+  /// The named elements of a kind in all lists of that name.
+  std::vector<ElementInstance> readList(const CheckedElement& around, const char* list, ElementKind kind) {
+    std::vector<ElementInstance> found;
+    for (const CheckedElement* elements : around.all(list))
+      for (const CheckedElement& element : elements->children)
+        if (element.row->kind == kind) found.push_back(instanceOf(element));
+    return found;
   }
 
   void readLevels(const CheckedElement& root) {
@@ -224,9 +220,24 @@ class StackReader {
         if (task.row->kind == ElementKind::task) {
           level.tasks.push_back(instanceOf(task));
           checkActivity(task);
+        } else if (task.row->kind == ElementKind::controller) {
+          level.controller = instanceOf(task);
         }
+      checkOwner(*element, level);
       if (element->values.has("priority")) stack_.levels.push_back(std::move(level));
     }
+  }
+
+  /// A level has tasks or one controller that owns it.
+  void checkOwner(const CheckedElement& element, const LevelDescription& level) {
+    if (level.tasks.empty() && !level.controller && element.children.size() == element.xml->children.size())
+      findings_.error(code::missing_element, *element.xml, "<level> needs a task, or a controller that owns it");
+    if (level.tasks.empty() || !level.controller) return;
+    for (const CheckedElement& child : element.children)
+      if (child.row->kind == ElementKind::task)
+        findings_.error(code::misplaced_element, *child.xml,
+                        "<" + level.controller->values.row().name + "> owns this level: '" + level.controller->name +
+                            "' has no tasks beside its own. Give this one a level of its own");
   }
 
   /// A window that never opens is a mistake.
@@ -371,6 +382,7 @@ class StackReader {
     stack_.run.seed = static_cast<std::uint64_t>(run->values.integer("seed"));
     checkDuration(*run);
     for (const CheckedElement* target : run->all("target")) readTarget(*target);
+    stack_.run.recorders = readList(root, "run", ElementKind::recorder);
     const CheckedElement* record = run->first("record");
     if (!record || !record->complete) return;
     stack_.run.columns = record->values.text("columns");
@@ -423,15 +435,18 @@ class StackReader {
 
   void checkReferences(const CheckedElement& root) {
     ReferenceChecker references(stack_, robot_known_, findings_);
-    std::vector<const CheckedElement*> signals;
-    for (const CheckedElement* list : root.all("signals"))
-      for (const CheckedElement& signal : list->children) signals.push_back(&signal);
-    for (const CheckedElement* signal : signals) references.checkAll(*signal);
+    std::vector<const CheckedElement*> sources;
+    for (const char* lists : {"sensors", "signals"})
+      for (const CheckedElement* list : root.all(lists))
+        for (const CheckedElement& source : list->children) sources.push_back(&source);
+    for (const CheckedElement* source : sources) references.checkAll(*source);
     for (const CheckedElement* level : root.all("level")) {
       references.check(*level);
       for (const CheckedElement& task : level->children) references.checkAll(task);
     }
-    references.warnOfUnusedSignals(signals);
+    for (const CheckedElement* run : root.all("run"))
+      for (const CheckedElement& recorder : run->children) references.checkAll(recorder);
+    references.warnOfUnusedSignals(sources);
   }
 
   control::Registry& registry_;

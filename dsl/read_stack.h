@@ -26,7 +26,7 @@ struct ReadOptions {
   std::map<std::string, std::string> backend_options;             ///< option=value for that back end, e.g. solver=nlopt
 };
 
-/// Adds the rows of the structural elements (<stack>, <robot>, <scene>, <box>, <level>, <controller>, …).
+/// Adds the structural elements (<stack>, <robot>, <scene>, <level>, <controller>, …) and the built-in shapes.
 void addStructureElements(control::Registry& registry);
 
 /// Reads and checks a stack.  Throws InvalidStack with every error found.  Warnings go to `warnings` when given.

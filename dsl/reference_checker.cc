@@ -115,13 +115,12 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
   if (contains(row.choices, text)) return;
   const std::size_t dot = text.find('.');
   const std::string signal = text.substr(0, dot), port = text.substr(dot + 1);
-  const auto found = std::find_if(stack_.signals.begin(), stack_.signals.end(),
-                                  [&](const ElementInstance& instance) { return instance.name == signal; });
-  if (found == stack_.signals.end()) {
+  const ElementInstance* found = stack_.source(signal);
+  if (!found) {
     std::vector<std::string> ports;
-    for (const ElementInstance& instance : stack_.signals)
-      for (const control::PortRow& candidate : instance.values.ports())
-        if (candidate.type == row.port_type) ports.push_back(instance.name + "." + candidate.name);
+    for (const ElementInstance* instance : stack_.sources())
+      for (const control::PortRow& candidate : instance->values.ports())
+        if (candidate.type == row.port_type) ports.push_back(instance->name + "." + candidate.name);
     return say(code::unknown_port, element, row, "the stack has no signal '" + signal + "'", nearestName(text, ports));
   }
   read_signals_.push_back(signal);
@@ -157,7 +156,8 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
 
 void ReferenceChecker::warnOfUnusedSignals(const std::vector<const CheckedElement*>& signals) {
   for (const CheckedElement* signal : signals) {
-    if (!signal->values.has("name")) continue;
+    // A sensor also changes what is felt; what it reads may be for the log alone.
+    if (!signal->values.has("name") || signal->row->kind != control::ElementKind::signal) continue;
     const bool reads =
         std::any_of(signal->row->attributes.begin(), signal->row->attributes.end(),
                     [&](const auto& row) { return row.type == ValueType::port && signal->values.has(row.name); });

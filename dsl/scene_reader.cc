@@ -9,7 +9,6 @@ namespace tactus::dsl {
 namespace {
 
 using control::ElementValues;
-using description::PrimitiveShape;
 
 Eigen::Isometry3d poseFrom(const std::vector<double>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -35,37 +34,10 @@ std::optional<Eigen::Isometry3d> readPose(const CheckedElement& element, Finding
   return std::nullopt;
 }
 
-using ShapeReader = PrimitiveShape (*)(const ElementValues&);
-
-const std::map<std::string, ShapeReader>& shapeReaders() {
-  static const std::map<std::string, ShapeReader> readers{
-      {"plane", [](const ElementValues&) -> PrimitiveShape { return description::PlanePrimitive{}; }},
-      {"box", [](const ElementValues& v) -> PrimitiveShape { return description::BoxPrimitive{v.vector3("size")}; }},
-      {"sphere",
-       [](const ElementValues& v) -> PrimitiveShape { return description::SpherePrimitive{v.real("radius")}; }},
-      {"cylinder",
-       [](const ElementValues& v) -> PrimitiveShape {
-         return description::CylinderPrimitive{v.real("radius"), v.real("length")};
-       }},
-      {"capsule", [](const ElementValues& v) -> PrimitiveShape {
-         return description::CapsulePrimitive{v.real("radius"), v.real("length")};
-       }}};
-  return readers;
-}
-
-/// Height of a primitive's highest point above its own origin, its axes upright.
-struct TopHeight {
-  double operator()(const description::PlanePrimitive&) const { return 0; }
-  double operator()(const description::BoxPrimitive& box) const { return box.size.z() / 2; }
-  double operator()(const description::SpherePrimitive& sphere) const { return sphere.radius; }
-  double operator()(const description::CylinderPrimitive& cylinder) const { return cylinder.length / 2; }
-  double operator()(const description::CapsulePrimitive& capsule) const { return capsule.length / 2 + capsule.radius; }
-};
-
 class SceneReader {
  public:
-  SceneReader(const CheckedElement& scene, Stack& stack, Findings& findings)
-      : scene_(scene), stack_(stack), findings_(findings) {}
+  SceneReader(const CheckedElement& scene, const control::Registry& registry, Stack& stack, Findings& findings)
+      : scene_(scene), registry_(registry), stack_(stack), findings_(findings) {}
 
   void run() {
     if (scene_.values.has("gravity")) stack_.gravity = scene_.values.vector3("gravity");
@@ -97,12 +69,28 @@ class SceneReader {
   }
 
   void addShape(const CheckedElement& element, ObjectDescription& object) {
-    const auto reader = shapeReaders().find(element.row->name);
-    if (reader == shapeReaders().end() || !element.complete) return;
+    if (element.row->kind != control::ElementKind::shape || !element.complete) return;
     const auto pose = readPose(element, findings_);
-    if (!pose) return;
-    object.object.primitives.push_back({reader->second(element.values), *pose});
-    object.shapes.push_back(element.values);
+    const auto shape = makeShape(element);
+    if (!pose || !shape) return;
+    object.object.primitives.push_back({shape, *pose});
+    object.shapes.push_back(valuesWithin(element));
+  }
+
+  /// Null, and the reason told, when the factory refuses.
+  std::shared_ptr<const geometry::Shape> makeShape(const CheckedElement& element) {
+    try {
+      return registry_.makeShape(valuesWithin(element));
+    } catch (const control::ElementError& error) {
+      if (const XmlAttribute* written = element.xml->attribute(error.attribute))
+        findings_.errorAtValue(code::refused_by_factory, *element.xml, *written, error.what(),
+                               nearestName(written->value, error.candidates));
+      else
+        findings_.error(code::refused_by_factory, *element.xml, error.what());
+    } catch (const std::exception& error) {
+      findings_.error(code::refused_by_factory, *element.xml, error.what());
+    }
+    return nullptr;
   }
 
   /// Turns a pose on a carrier's top into the world, the carrier's first.
@@ -113,7 +101,8 @@ class SceneReader {
       const ObjectDescription& carrier = stack_.objects[index_.at(object.on)];
       const description::Primitive& first = carrier.object.primitives.front();
       Eigen::Isometry3d top = carrier.object.pose * first.pose;
-      top.translation().z() += std::visit(TopHeight{}, first.shape);
+      const auto highest = first.shape->support(Eigen::Vector3d::UnitZ());  // none of a plane, which ends at its origin
+      if (highest) top.translation().z() += highest->z();
       object.object.pose = top * object.object.pose;
     }
     placed_[i] = true;
@@ -154,6 +143,7 @@ class SceneReader {
   }
 
   const CheckedElement& scene_;
+  const control::Registry& registry_;
   Stack& stack_;
   Findings& findings_;
   std::map<std::string, std::size_t> index_;
@@ -164,8 +154,8 @@ class SceneReader {
 
 }  // namespace
 
-void readScene(const CheckedElement& scene, Stack& stack, Findings& findings) {
-  SceneReader(scene, stack, findings).run();
+void readScene(const CheckedElement& scene, const control::Registry& registry, Stack& stack, Findings& findings) {
+  SceneReader(scene, registry, stack, findings).run();
 }
 
 }  // namespace tactus::dsl

@@ -11,7 +11,7 @@
 
 namespace tactus::dsl {
 
-/// An element that a factory will turn into a task or a signal.
+/// An element that a factory will turn into a task, a signal, ….
 struct ElementInstance {
   control::ElementValues values;                                   ///< values.row().name is the element
   std::string name;
@@ -24,7 +24,8 @@ struct LevelDescription {
   int priority = 1;
   std::optional<double> weight;
   bool strict = false;
-  std::vector<ElementInstance> tasks;
+  std::vector<ElementInstance> tasks;                              ///< none where a controller owns the level
+  std::optional<ElementInstance> controller;
   description::Place strict_place;                                 ///< of the value of `strict`, where it is written
 };
 
@@ -59,6 +60,7 @@ struct RunOptions {
   std::string columns = "default";                                 ///< "default" | "all"
   double record_rate = 100;                                        ///< Hz, rows of log.csv
   std::vector<TargetDescription> targets;
+  std::vector<ElementInstance> recorders;
 };
 
 /// A stack, read and checked, nothing built yet.
@@ -72,6 +74,7 @@ struct Stack {
   Eigen::VectorXd start_q;                                         ///< dof
   std::vector<ObjectDescription> objects;
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);
+  std::vector<ElementInstance> sensors;
   std::vector<ElementInstance> signals;
   std::vector<LevelDescription> levels;
   ElementInstance controller;                                      ///< base attributes: backend, rate
@@ -83,6 +86,10 @@ struct Stack {
   /// Every file that another one brought in → the places that did, innermost first.
   std::map<std::string, std::vector<description::Place>> included_from;
 
+  /// What has ports: sensors, then signals.
+  std::vector<const ElementInstance*> sources() const;
+  /// Null when there is no such sensor or signal.
+  const ElementInstance* source(std::string_view name) const;
   /// The scene with jitter drawn from the seed; the same seed gives the same scene on every machine.
   description::Scene scene(std::uint64_t seed) const;
 };

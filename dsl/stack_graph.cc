@@ -17,14 +17,23 @@ using control::PortRow;
 using control::ValueType;
 using nlohmann::ordered_json;
 
-/// Ids are those of the log: "signal/touch", "level/1", "task/hold".
-std::string idOf(const GraphNode& node) {
+std::string kindOf(const GraphNode& node) {
   switch (node.kind) {
-    case GraphNode::Kind::signal: return "signal/" + node.name;
-    case GraphNode::Kind::level: return "level/" + node.name;
-    case GraphNode::Kind::task: return "task/" + node.name;
+    case GraphNode::Kind::sensor: return "sensor";
+    case GraphNode::Kind::signal: return "signal";
+    case GraphNode::Kind::level: return "level";
+    case GraphNode::Kind::controller: return "controller";
+    case GraphNode::Kind::task: return "task";
+    case GraphNode::Kind::recorder: return "recorder";
   }
   return "";
+}
+
+/// Ids are those of the log: "signal/touch", "level/1", "task/hold".
+std::string idOf(const GraphNode& node) { return kindOf(node) + "/" + node.name; }
+
+bool isSource(const GraphNode& node) {
+  return node.kind == GraphNode::Kind::sensor || node.kind == GraphNode::Kind::signal;
 }
 
 const PortRow* portOf(const GraphNode& node, const std::string& name) {
@@ -37,20 +46,26 @@ class Builder {
   explicit Builder(const Stack& stack) : stack_(stack) { graph_.stack = stack.name; }
 
   StackGraph run() {
-    for (const ElementInstance& signal : stack_.signals) {
-      signals_[signal.name] = add(GraphNode::Kind::signal, signal, signal.name);
-      graph_.nodes.back().ports = signal.values.ports();
-    }
-    for (const ElementInstance& signal : stack_.signals) read(signal, signals_[signal.name]);
+    const auto addSource = [this](GraphNode::Kind kind, const ElementInstance& source) {
+      sources_[source.name] = add(kind, source, source.name);
+      graph_.nodes.back().ports = source.values.ports();
+    };
+    for (const ElementInstance& sensor : stack_.sensors) addSource(GraphNode::Kind::sensor, sensor);
+    for (const ElementInstance& signal : stack_.signals) addSource(GraphNode::Kind::signal, signal);
+    for (const ElementInstance* source : stack_.sources()) read(*source, sources_[source->name]);
     for (const LevelDescription& level : stack_.levels) {
       const int node = add(GraphNode::Kind::level, level.element, std::to_string(level.priority));
       read(level.element, node);
-      for (const ElementInstance& task : level.tasks) {
-        const int id = add(GraphNode::Kind::task, task, task.name);
+      const auto addReader = [&](GraphNode::Kind kind, const ElementInstance& element) {
+        const int id = add(kind, element, element.name);
         graph_.nodes.back().level = node;
-        read(task, id);
-      }
+        read(element, id);
+      };
+      if (level.controller) addReader(GraphNode::Kind::controller, *level.controller);
+      for (const ElementInstance& task : level.tasks) addReader(GraphNode::Kind::task, task);
     }
+    for (const ElementInstance& recorder : stack_.run.recorders)
+      read(recorder, add(GraphNode::Kind::recorder, recorder, recorder.name));
     for (auto& node : graph_.nodes) node.used = node.kind != GraphNode::Kind::signal;
     for (const GraphEdge& edge : graph_.edges)
       for (const int end : {edge.from, edge.to}) graph_.nodes[static_cast<std::size_t>(end)].used = true;
@@ -76,8 +91,8 @@ class Builder {
       if (row.type != ValueType::port || !values.has(row.name)) continue;
       const control::Value& value = values.value(row.name);
       const std::size_t dot = value.text.find('.');
-      const auto signal = signals_.find(value.text.substr(0, dot));
-      if (dot == std::string::npos || signal == signals_.end()) continue;  // a word, or a default without its signal
+      const auto signal = sources_.find(value.text.substr(0, dot));
+      if (dot == std::string::npos || signal == sources_.end()) continue;  // a word, or a default without its signal
       const std::string port = value.text.substr(dot + 1);
       if (!portOf(graph_.nodes[static_cast<std::size_t>(signal->second)], port)) continue;
       graph_.edges.push_back(
@@ -87,7 +102,7 @@ class Builder {
 
   const Stack& stack_;
   StackGraph graph_;
-  std::map<std::string, int> signals_;
+  std::map<std::string, int> sources_;
 };
 
 std::string quoted(const std::string& text) {
@@ -175,13 +190,13 @@ class Drawing {
     std::vector<int> depth(graph_.nodes.size(), 0);
     for (std::size_t round = 0; round < graph_.nodes.size(); ++round)
       for (const GraphEdge& edge : graph_.edges)
-        if (node(static_cast<std::size_t>(edge.to)).kind == GraphNode::Kind::signal)
+        if (isSource(node(static_cast<std::size_t>(edge.to))))
           depth[static_cast<std::size_t>(edge.to)] =
               std::min(std::max(depth[static_cast<std::size_t>(edge.to)], depth[static_cast<std::size_t>(edge.from)] + 1),
                        static_cast<int>(graph_.nodes.size()));
     std::map<int, double> bottom;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (node(i).kind != GraphNode::Kind::signal) continue;
+      if (!isSource(node(i))) continue;
       double& y = bottom.try_emplace(depth[i], margin).first->second;
       boxes_[i].x = margin + depth[i] * (box_width + column_gap);
       boxes_[i].y = y;
@@ -207,6 +222,12 @@ class Drawing {
       }
       level.height = y + gap / 2 - level.y;
       y += gap / 2 + gap;
+    }
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (node(i).kind != GraphNode::Kind::recorder) continue;
+      boxes_[i].x = tasks_x_ + gap / 2;
+      boxes_[i].y = y;
+      y += boxes_[i].height + gap;
     }
     width_ = tasks_x_ + box_width + 2 * gap + margin;
     height_ = std::max(height_, y) + margin - gap;
@@ -237,7 +258,7 @@ class Drawing {
     const bool level = n.kind == GraphNode::Kind::level;
     std::string svg = "<rect x='" + px(box.x) + "' y='" + px(box.y) + "' width='" + px(box.width) + "' height='" +
                       px(box.height) + "' rx='7' fill='" +
-                      (level ? "none" : n.kind == GraphNode::Kind::signal ? "#eef4f8" : "#f7f4ea") + "' stroke='" +
+                      (level ? "none" : isSource(n) ? "#eef4f8" : "#f7f4ea") + "' stroke='" +
                       (n.used ? "#9aa5ad" : "#d55e00") + "'" + (level ? " stroke-dasharray='2 3'" : "") + "/>\n";
     svg += textAt(box.x + 10, box.y + 17, level ? "level " + n.name : n.name, "font-weight='600' fill='#222'");
     if (!level) svg += textAt(box.x + 10, box.y + 32, n.element + (n.used ? "" : ", not used"), "fill='#666'");
@@ -270,10 +291,10 @@ std::string graphToDot(const StackGraph& graph) {
   const auto node = [&](std::size_t i, const std::string& indent) {
     const GraphNode& n = graph.nodes[i];
     out += indent + quoted(idOf(n)) + " [label=" + quoted(n.name + "\n" + n.element) +
-           (n.kind == GraphNode::Kind::signal ? ", style=rounded" : "") + (n.used ? "" : ", color=orange") + "];\n";
+           (isSource(n) ? ", style=rounded" : "") + (n.used ? "" : ", color=orange") + "];\n";
   };
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    if (graph.nodes[i].kind == GraphNode::Kind::signal) node(i, "  ");
+    if (isSource(graph.nodes[i]) || graph.nodes[i].kind == GraphNode::Kind::recorder) node(i, "  ");
     if (graph.nodes[i].kind != GraphNode::Kind::level) continue;
     out += "  subgraph " + quoted("cluster_" + graph.nodes[i].name) + " {\n    label=" +
            quoted("level " + graph.nodes[i].name) + ";\n";
@@ -295,9 +316,9 @@ ordered_json graphToJson(const StackGraph& graph) {
   for (const GraphNode& node : graph.nodes) {
     ordered_json json{{"id", idOf(node)}, {"name", node.name}, {"element", node.element}, {"file", node.place.file},
                       {"line", node.place.line}, {"column", node.place.column}};
-    json["kind"] = node.kind == GraphNode::Kind::signal ? "signal" : node.kind == GraphNode::Kind::level ? "level" : "task";
+    json["kind"] = kindOf(node);
     if (node.level >= 0) json["level"] = graph.nodes[static_cast<std::size_t>(node.level)].name;
-    if (node.kind == GraphNode::Kind::signal) {
+    if (isSource(node)) {
       json["used"] = node.used;
       json["ports"] = ordered_json::array();
       for (const PortRow& port : node.ports) {

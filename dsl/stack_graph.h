@@ -6,21 +6,21 @@
 
 #include "dsl/stack.h"
 
-/// Which element of a stack reads which port: signals on the left, tasks in their levels on the right.
+/// Which element of a stack reads which port: sensors and signals on the left, tasks in their levels on the right.
 namespace tactus::dsl {
 
 struct GraphNode {
-  enum class Kind { signal, level, task } kind = Kind::signal;
+  enum class Kind { sensor, signal, level, controller, task, recorder } kind = Kind::signal;
   std::string name;                                                ///< of a level: its priority
   std::string element;                                             ///< "contacts", "level", "posture"
   description::Place place;
-  int level = -1;                                                  ///< of a task: index of its level's node
+  int level = -1;                                                  ///< of a task or controller: index of its level's node
   bool used = true;                                                ///< false: a signal that reads and is read by nothing
-  std::vector<control::PortRow> ports;                             ///< of a signal
+  std::vector<control::PortRow> ports;                             ///< of a sensor or signal
 };
 
 struct GraphEdge {
-  int from = 0;                                                    ///< node of a signal
+  int from = 0;                                                    ///< node of a sensor or signal
   std::string port;
   int to = 0;
   std::string attribute;                                           ///< by which it is read
@@ -29,7 +29,7 @@ struct GraphEdge {
 
 struct StackGraph {
   std::string stack;
-  std::vector<GraphNode> nodes;                                    ///< signals, then each level before its tasks
+  std::vector<GraphNode> nodes;                        ///< sensors, signals, each level before what it holds, recorders
   std::vector<GraphEdge> edges;
 };
 

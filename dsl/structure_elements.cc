@@ -1,4 +1,5 @@
 #include "dsl/read_stack.h"
+#include "dsl/shape_elements.h"
 
 namespace tactus::dsl {
 namespace {
@@ -12,19 +13,6 @@ const AttributeRow class_of_object{
     .name = "class",
     .type = ValueType::element_class,
     .description = "The <defaults> class whose values this object takes where it gives none."};
-
-AttributeRow shapePose() {
-  return {.name = "pose",
-          .type = ValueType::reals,
-          .unit = "m, rad",
-          .default_text = "0 0 0",
-          .description = "Place in the object: x y z, or x y z roll pitch yaw (fixed axes)."};
-}
-
-AttributeRow positiveLength(const std::string& name, const std::string& description) {
-  return {.name = name, .type = ValueType::real, .unit = "m", .required = true, .description = description, .lower = 0,
-          .lower_open = true};
-}
 
 ElementRow stackRow() {
   return {.name = "stack",
@@ -44,6 +32,7 @@ ElementRow stackRow() {
                        {"plugin"},
                        {"robot", 1, 1},
                        {"scene", 0, 1},
+                       {"sensors"},
                        {"signals"},
                        {"level", 1},
                        {"controller", 1, 1},
@@ -79,7 +68,7 @@ ElementRow defaultsRow() {
           .attributes = {{.name = "class", .type = ValueType::identifier, .required = true, .description = "Its name."},
                          {.name = "base", .type = ValueType::element_class,
                           .description = "A class whose values hold where this one gives none."}},
-          .children = {{"@task"}, {"@signal"}, {"object"}}};
+          .children = {{"@task"}, {"@controller"}, {"@signal"}, {"@sensor"}, {"object"}}};
 }
 
 ElementRow pluginRow() {
@@ -139,9 +128,12 @@ ElementRow objectRow() {
           .children = {{"@shape", 1}}};
 }
 
-ElementRow shapeRow(const std::string& name, const std::string& description, std::vector<AttributeRow> sizes) {
-  sizes.push_back(shapePose());
-  return {.name = name, .kind = ElementKind::shape, .description = description, .attributes = std::move(sizes)};
+ElementRow sensorsRow() {
+  return {.name = "sensors",
+          .kind = ElementKind::structure,
+          .description = "What stands between the plant and the controller, in this order; without any, the controller "
+                         "feels what there is.  Read as sensor.port.",
+          .children = {{"@sensor"}, {"include"}}};
 }
 
 ElementRow signalsRow() {
@@ -154,7 +146,8 @@ ElementRow signalsRow() {
 ElementRow levelRow() {
   ElementRow row{.name = "level",
                .kind = ElementKind::structure,
-               .description = "Tasks of one priority.  Lower levels must not disturb those above.",
+               .description = "Tasks of one priority, or one controller that owns the level.  Lower levels must not disturb those "
+                              "above.",
                .attributes = {{.name = "priority",
                                .type = ValueType::integer,
                                .required = true,
@@ -170,7 +163,7 @@ ElementRow levelRow() {
                                .type = ValueType::flag,
                                .default_text = "false",
                                .description = "Refuse back ends that would only weigh this level against others."}},
-               .children = {{"@task", 1}, {"include"}}};
+               .children = {{"@task"}, {"@controller", 0, 1}, {"include"}}};
   for (AttributeRow& attribute : control::activityAttributes()) row.attributes.push_back(std::move(attribute));
   return row;
 }
@@ -233,7 +226,7 @@ ElementRow runRow() {
                           .lower_open = true},
                          {.name = "seed", .type = ValueType::integer, .default_text = "1",
                           .description = "Of every draw; 0 draws no jitter.", .lower = 0}},
-          .children = {{"record", 0, 1}, {"target"}}};
+          .children = {{"record", 0, 1}, {"@recorder"}, {"target"}}};
 }
 
 ElementRow targetRow() {
@@ -261,27 +254,10 @@ ElementRow recordRow() {
 
 void addStructureElements(control::Registry& registry) {
   for (ElementRow row : {stackRow(), parameterRow(), includeRow(), defaultsRow(), pluginRow(), robotRow(), startRow(),
-                         sceneRow(), objectRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
+                         sceneRow(), objectRow(), sensorsRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
                          recordRow(), targetRow()})
     registry.addStructure(std::move(row));
-  registry.addStructure(shapeRow("plane", "The half space below z = 0 of its own frame.", {}));
-  registry.addStructure(shapeRow("box", "A box about its own origin.",
-                                 {{.name = "size",
-                                   .type = ValueType::reals,
-                                   .unit = "m",
-                                   .required = true,
-                                   .description = "Full lengths of its edges along x y z.",
-                                   .lower = 0,
-                                   .lower_open = true,
-                                   .count = 3}}));
-  registry.addStructure(
-      shapeRow("sphere", "A sphere about its own origin.", {positiveLength("radius", "Its radius.")}));
-  registry.addStructure(
-      shapeRow("cylinder", "A cylinder along z about its own origin.",
-               {positiveLength("radius", "Its radius."), positiveLength("length", "Its full height.")}));
-  registry.addStructure(shapeRow("capsule", "A capsule along z about its own origin.",
-                                 {positiveLength("radius", "Its radius."),
-                                  positiveLength("length", "Of its straight part.")}));
+  addShapeElements(registry);
 }
 
 }  // namespace tactus::dsl

@@ -50,15 +50,15 @@ bool isReference(ValueType type) {
 }
 
 /// The table may name by default what this stack does not have; written out, that would be an error.
-bool isWritten(const AttributeRow& row, const control::Value& value, const std::vector<ElementInstance>& signals) {
+bool isWritten(const AttributeRow& row, const control::Value& value, const std::vector<const ElementInstance*>& sources) {
   if (row.type == ValueType::element_class) return false;
   if (value.origin.kind != control::Origin::Kind::table_default || !isReference(row.type)) return true;
   if (std::find(row.choices.begin(), row.choices.end(), value.text) != row.choices.end()) return true;
   const std::size_t dot = value.text.find('.');
   return row.type == ValueType::port && dot != std::string::npos &&
-         std::any_of(signals.begin(), signals.end(), [&](const ElementInstance& signal) {
-           const std::vector<control::PortRow> ports = signal.values.ports();
-           return signal.name == value.text.substr(0, dot) &&
+         std::any_of(sources.begin(), sources.end(), [&](const ElementInstance* source) {
+           const std::vector<control::PortRow> ports = source->values.ports();
+           return source->name == value.text.substr(0, dot) &&
                   std::any_of(ports.begin(), ports.end(), [&](const control::PortRow& port) {
                     return port.name == value.text.substr(dot + 1) && port.type == row.port_type;
                   });
@@ -67,21 +67,21 @@ bool isWritten(const AttributeRow& row, const control::Value& value, const std::
 
 /// Attributes in the order of the row, defaults and classes written out.
 std::string attributesOf(const ElementRow& row, const ElementValues& values,
-                         const std::vector<ElementInstance>& signals = {}) {
+                         const std::vector<const ElementInstance*>& sources = {}) {
   std::string out;
   for (const AttributeRow& attribute : row.attributes) {
-    if (!values.has(attribute.name) || !isWritten(attribute, values.value(attribute.name), signals)) continue;
+    if (!values.has(attribute.name) || !isWritten(attribute, values.value(attribute.name), sources)) continue;
     out += attributeText(attribute.name, canonical(attribute, values.text(attribute.name)));
   }
   return out;
 }
 
 std::string leaf(const std::string& indent, const ElementValues& values,
-                 const std::vector<ElementInstance>& signals = {}) {
-  const std::string start = indent + "<" + values.row().name + attributesOf(values.row(), values, signals);
+                 const std::vector<const ElementInstance*>& sources = {}) {
+  const std::string start = indent + "<" + values.row().name + attributesOf(values.row(), values, sources);
   if (values.children.empty()) return start + "/>\n";
   std::string out = start + ">\n";
-  for (const ElementValues& child : values.children) out += leaf(indent + "  ", child, signals);
+  for (const ElementValues& child : values.children) out += leaf(indent + "  ", child, sources);
   return out + indent + "</" + values.row().name + ">\n";
 }
 
@@ -98,9 +98,10 @@ std::string objectText(const ObjectDescription& object) {
   return out + "    </object>\n";
 }
 
-std::string levelText(const LevelDescription& level, const std::vector<ElementInstance>& signals) {
-  std::string out = "  <level" + attributesOf(level.element.values.row(), level.element.values, signals) + ">\n";
-  for (const ElementInstance& task : level.tasks) out += leaf("    ", task.values, signals);
+std::string levelText(const LevelDescription& level, const std::vector<const ElementInstance*>& sources) {
+  std::string out = "  <level" + attributesOf(level.element.values.row(), level.element.values, sources) + ">\n";
+  if (level.controller) out += leaf("    ", level.controller->values, sources);
+  for (const ElementInstance& task : level.tasks) out += leaf("    ", task.values, sources);
   return out + "  </level>\n";
 }
 
@@ -130,12 +131,16 @@ std::string writeResolved(const Stack& stack) {
   out += "  <scene" + attributeText("gravity", numbersText(stack.gravity)) + ">\n";
   for (const ObjectDescription& object : stack.objects) out += objectText(object);
   out += "  </scene>\n";
-  if (!stack.signals.empty()) {
-    out += "  <signals>\n";
-    for (const ElementInstance& signal : stack.signals) out += leaf("    ", signal.values, stack.signals);
-    out += "  </signals>\n";
-  }
-  for (const LevelDescription& level : stack.levels) out += levelText(level, stack.signals);
+  const std::vector<const ElementInstance*> sources = stack.sources();
+  const auto list = [&](const std::string& name, const std::vector<ElementInstance>& elements) {
+    if (elements.empty()) return;
+    out += "  <" + name + ">\n";
+    for (const ElementInstance& element : elements) out += leaf("    ", element.values, sources);
+    out += "  </" + name + ">\n";
+  };
+  list("sensors", stack.sensors);
+  list("signals", stack.signals);
+  for (const LevelDescription& level : stack.levels) out += levelText(level, sources);
   out += "  <controller" + attributesOf(stack.controller.values.row(), stack.controller.values) +
          attributesOf(stack.back_end.row(), stack.back_end) + (stack.alternatives.empty() ? "/>\n" : ">\n");
   for (const ElementValues& other : stack.alternatives)
@@ -145,6 +150,7 @@ std::string writeResolved(const Stack& stack) {
          attributeText("seed", std::to_string(stack.run.seed)) + ">\n    <record" +
          attributeText("columns", stack.run.columns) +
          attributeText("rate", control::formatNumber(stack.run.record_rate)) + "/>\n";
+  for (const ElementInstance& recorder : stack.run.recorders) out += leaf("    ", recorder.values, sources);
   for (const TargetDescription& target : stack.run.targets) out += targetText(target);
   return out + "  </run>\n</stack>\n";
 }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/distance.h"
-
 namespace tactus::sim {
 namespace {
 
@@ -17,9 +15,8 @@ double smoothFall(double x) {
 /// The t in (0, 1) that makes 4t(1−t) δ(t)² greatest, δ(t) = r − d(a + t (b − a)) concave, and the distance there.
 /// A stationary point solves F(t) = (1−2t) δ + 2t(1−t) δ' = 0, where F falls through zero; false position
 /// (Illinois) between points that touch, bisection towards the touching part otherwise.  False: nothing touches.
-template <class Shape>
-bool findInteriorPoint(const Shape& shape, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
-                       double depth_a, double depth_b, double& t, SignedDistance& nearest) {
+bool findInteriorPoint(const geometry::Shape& shape, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
+                       double depth_a, double depth_b, double& t, geometry::SignedDistance& nearest) {
   constexpr int max_iterations = 60;
   constexpr double t_tolerance = 1e-9;
   const Eigen::Vector3d axis = b - a;
@@ -28,7 +25,7 @@ bool findInteriorPoint(const Shape& shape, const Eigen::Vector3d& a, const Eigen
   int last_side = 0;
   for (int i = 0; i < max_iterations; ++i) {
     t = F_low > 0 && F_high < 0 ? (low * F_high - high * F_low) / (F_high - F_low) : 0.5 * (low + high);
-    nearest = signedDistance(shape, a + t * axis);
+    nearest = shape.distance(a + t * axis);
     const double depth = radius - nearest.distance;
     const double slope = -nearest.gradient.dot(axis);
     if (depth <= 0) {
@@ -63,7 +60,7 @@ bool findInteriorPoint(const Shape& shape, const Eigen::Vector3d& a, const Eigen
 
 struct ContactForce::Point {
   Eigen::Vector3d p_P;                                             // on the capsule's axis
-  SignedDistance nearest;
+  geometry::SignedDistance nearest;
   double depth;
   double weight;
 };
@@ -75,7 +72,7 @@ ContactForce::ContactForce(const std::vector<LinkFeature>& features, const descr
     const description::Object& object = scene.objects[i];
     for (const description::Primitive& primitive : object.primitives) {
       const Eigen::Isometry3d X_WP = object.pose * primitive.pose;
-      primitives_.push_back({i, primitive.shape, X_WP.linear(), X_WP.translation(), boundingRadius(primitive.shape),
+      primitives_.push_back({i, primitive.shape, X_WP.linear(), X_WP.translation(), primitive.shape->boundingRadius(),
                              object.material, {}});
     }
   }
@@ -102,23 +99,23 @@ void ContactForce::evaluate(const std::vector<BodyMotion>& bodies, double h) {
       const ScenePrimitive& primitive = primitives_[p];
       const double limit = reach + primitive.bounding_radius;
       if ((middle_W - primitive.p_WP).squaredNorm() > limit * limit) continue;
-      std::visit([&](const auto& shape) { touchPair(shape, f, p, body, h); }, primitive.shape);
+      touchPair(f, p, body, h);
     }
   }
 }
 
-template <class Shape>
-void ContactForce::touchPair(const Shape& shape, int f, int p, const BodyMotion& body, double h) {
+void ContactForce::touchPair(int f, int p, const BodyMotion& body, double h) {
   const LinkFeature& feature = features_[f];
   const ScenePrimitive& primitive = primitives_[p];
+  const geometry::Shape& shape = *primitive.shape;
   const Eigen::Vector3d a = primitive.R_WP.transpose() * (body.p_WB + body.R_WB * feature.from - primitive.p_WP);
   const Eigen::Vector3d axis = primitive.R_WP.transpose() * (body.R_WB * (feature.to - feature.from));
   const Eigen::Vector3d b = a + axis;
   const double length = axis.norm();
   const double radius = feature.radius;
-  if (signedDistance(shape, a + 0.5 * axis).distance > radius + 0.5 * length) return;
+  if (shape.distance(a + 0.5 * axis).distance > radius + 0.5 * length) return;
 
-  Point ends[2] = {{a, signedDistance(shape, a), 0, 1}, {b, signedDistance(shape, b), 0, 1}};
+  Point ends[2] = {{a, shape.distance(a), 0, 1}, {b, shape.distance(b), 0, 1}};
   for (Point& end : ends) end.depth = radius - end.nearest.distance;
   Point interior = {};
   double t = 0;
@@ -189,7 +186,7 @@ double ContactForce::exposure(const ScenePrimitive& primitive, const Eigen::Vect
     const ScenePrimitive& other = primitives_[j];
     const Eigen::Vector3d offset_W = surface_point_W - other.p_WP;
     if (offset_W.squaredNorm() > other.bounding_radius * other.bounding_radius) continue;
-    const double burial = -signedDistance(other.shape, other.R_WP.transpose() * offset_W).distance;
+    const double burial = -other.shape->distance(other.R_WP.transpose() * offset_W).distance;
     exposure *= smoothFall(burial / options_.burial_fade);
   }
   return exposure;
@@ -219,7 +216,7 @@ void ContactForce::read(std::vector<control::ContactRecord>& records) const {
       // The mean of several points of a curved surface lies under it: bring it back up.
       const Eigen::Vector3d mean_P =
           primitive.R_WP.transpose() * (touch.weighted_point_W / touch.weight_N - primitive.p_WP);
-      const SignedDistance nearest = signedDistance(primitive.shape, mean_P);
+      const geometry::SignedDistance nearest = primitive.shape->distance(mean_P);
       record.point_W = primitive.p_WP + primitive.R_WP * (mean_P - nearest.distance * nearest.gradient);
       record.normal_W = touch.normal_force_W / normal_norm_N;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <vector>
 
 #include "framework/control/sensed.h"
@@ -78,7 +79,7 @@ class ContactForce {
 
   struct ScenePrimitive {
     int object;
-    description::PrimitiveShape shape;
+    std::shared_ptr<const geometry::Shape> shape;
     Eigen::Matrix3d R_WP;
     Eigen::Vector3d p_WP;
     double bounding_radius;
@@ -100,8 +101,7 @@ class ContactForce {
   /// One contact point of a pair, in the primitive's frame.
   struct Point;
 
-  template <class Shape>
-  void touchPair(const Shape& shape, int feature, int primitive, const BodyMotion& body, double h);
+  void touchPair(int feature, int primitive, const BodyMotion& body, double h);
   void press(const Point& point, const ScenePrimitive& primitive, const BodyMotion& body, double h, int slot,
              Touch& touch);
   double exposure(const ScenePrimitive& primitive, const Eigen::Vector3d& surface_point_W) const;

@@ -42,22 +42,23 @@ std::vector<std::string> includes(const fs::path& file) {
 
 bool startsWith(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-const std::vector<std::string> kRooms = {"framework/description", "framework/dynamics", "framework/control",
+const std::vector<std::string> kRooms = {"framework/geometry", "framework/description", "framework/dynamics", "framework/control",
                                          "framework/runtime",     "tasks",              "dsl",
                                          "conformance",           "plugins",            "sim",
                                          "apps"};
 
 /// What each room may include of the project, besides itself.
 const std::map<std::string, std::vector<std::string>> kMayUse = {
-    {"framework/description", {}},
+    {"framework/geometry", {}},
+    {"framework/description", {"framework/geometry"}},
     {"framework/dynamics", {"framework/description"}},
-    {"framework/control", {"framework/description", "framework/dynamics"}},
-    {"framework/runtime", {"framework/description", "framework/dynamics", "framework/control"}},
+    {"framework/control", {"framework/geometry", "framework/description", "framework/dynamics"}},
+    {"framework/runtime", {"framework/geometry", "framework/description", "framework/dynamics", "framework/control"}},
     {"tasks", {"framework/description", "framework/dynamics", "framework/control"}},
     {"dsl", {"framework"}},
     {"conformance", {"framework", "tasks", "dsl"}},
     {"plugins", {"framework"}},
-    {"sim", {"framework/description", "framework/runtime", "framework/control/sensed.h"}},
+    {"sim", {"framework/geometry", "framework/description", "framework/runtime", "framework/control/sensed.h"}},
     {"apps", {"framework", "tasks", "dsl", "sim", "conformance"}},
 };
 
@@ -123,7 +124,7 @@ TEST(Rooms, ThePlantIsBuiltWithoutFrameworkDynamics) {
 }
 
 TEST(Rooms, TestsMirrorTheRooms) {
-  for (const std::string room : {"dynamics", "control", "runtime", "tasks", "dsl", "conformance", "plugins", "sim", "apps"}) {
+  for (const std::string room : {"geometry", "dynamics", "control", "runtime", "tasks", "dsl", "conformance", "plugins", "sim", "apps"}) {
     EXPECT_TRUE(fs::exists(kRoot / "tests" / room / "CMakeLists.txt")) << room;
   }
 }

@@ -10,6 +10,7 @@ namespace tactus::app {
 
 CapsuleKeeper::CapsuleKeeper(const Session& session, const std::string& folder)
     : stack_(session.stack()),
+      places_(session.taskPlaces()),
       folder_(folder),
       joints_(session.controller().model().jointNames()) {}
 
@@ -17,7 +18,7 @@ void CapsuleKeeper::before(const control::Controller& controller) {
   if (hasRoom()) before_ = controller.backEnd().warmStart();
 }
 
-void CapsuleKeeper::observe(const runtime::ObservedTick& tick) {
+void CapsuleKeeper::observe(const control::ObservedTick& tick) {
   const control::TickRecord& record = tick.controller.record();
   if (record.sensing.blind) {                                      // the back end was not asked: its problem is an older tick's
     ++tick_;
@@ -41,7 +42,7 @@ void CapsuleKeeper::observe(const runtime::ObservedTick& tick) {
   ++tick_;
 }
 
-void CapsuleKeeper::broken(const runtime::BrokenTick& tick) {
+void CapsuleKeeper::broken(const control::BrokenTick& tick) {
   if (tick.error.part != control::TickError::Part::back_end || !hasRoom()) return;
   dsl::Capsule capsule = capsuleOf(tick.controller, tick.sensed);
   capsule.status = control::Status::failed;
@@ -55,7 +56,7 @@ std::vector<std::string> CapsuleKeeper::warnings() const {
   std::vector<std::string> warnings = warnings_;
   if (!infeasible_) return warnings;
   const std::string why =
-      control::describe(control::findConflict(*infeasible_), *infeasible_, {joints_, taskPlaces(stack_)});
+      control::describe(control::findConflict(*infeasible_), *infeasible_, {joints_, places_});
   if (!why.empty())
     warnings.push_back("first infeasible at t = " + control::formatNumber(infeasible_time_) + " s: " + why);
   return warnings;
@@ -72,7 +73,7 @@ dsl::Capsule CapsuleKeeper::capsuleOf(const control::Controller& controller, con
   capsule.q = sensed.q;
   capsule.qd = sensed.qd;
   capsule.joints = joints_;
-  capsule.places = taskPlaces(stack_);
+  capsule.places = places_;
   capsule.stack = dsl::writeResolved(stack_);
   return capsule;
 }

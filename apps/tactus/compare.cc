@@ -27,11 +27,11 @@ struct CompareArguments : StackArguments {
 };
 
 /// How a closed loop went, for its curves: so many samples at most, each the largest of its ticks.
-class Traces final : public runtime::Observer {
+class Traces final : public control::Observer {
  public:
   explicit Traces(const Session& session)
       : session_(session), ticks_per_sample_(std::max(1L, std::lround(session.stack().run.duration / session.controller().period() / most_samples))) {}
-  void observe(const runtime::ObservedTick& tick) override {
+  void observe(const control::ObservedTick& tick) override {
     const runtime::ContactMetrics::Now& now = session_.contacts().now();
     if (ticks_++ % ticks_per_sample_ == 0) samples_.push_back({tick.sensed.time, 0, 0, 0});
     Sample& sample = samples_.back();
@@ -65,14 +65,14 @@ class Traces final : public runtime::Observer {
 };
 
 /// Mean of |error| of each task over a run.
-class TaskErrors final : public runtime::Observer {
+class TaskErrors final : public control::Observer {
  public:
   explicit TaskErrors(const control::Controller& controller) {
     for (const control::Level& level : controller.levels()) {
       for (const control::NamedTask& named : level.tasks) tasks_.push_back({named.name, named.task.get(), 0});
     }
   }
-  void observe(const runtime::ObservedTick&) override {
+  void observe(const control::ObservedTick&) override {
     ++ticks_;
     for (Sum& sum : tasks_) sum.error += std::abs(sum.task->error());
   }
@@ -102,17 +102,18 @@ ordered_json timesToJson(const std::vector<double>& times) {
 }
 
 /// The whole run with one back end.
-ordered_json closedLoop(Session& session, const std::string& label, const std::vector<runtime::Observer*>& more,
+ordered_json closedLoop(Session& session, const std::string& label, const std::vector<control::Observer*>& more,
                         const std::atomic<bool>& stop) {
   TaskErrors errors(session.controller());
   Traces traces(session);
   Progress progress(session.stack().run.duration, label + ": ");
-  std::vector<runtime::Observer*> observers{&errors, &traces, &progress};
+  std::vector<control::Observer*> observers{&errors, &traces, &progress};
   observers.insert(observers.end(), more.begin(), more.end());
   const runtime::LoopResult result = session.run(observers, stop);
 
   for (const std::string& warning : session.warnings()) std::cerr << label << ": warning: " << warning << "\n";
-  if (result.ending == runtime::Ending::tick_error) std::rethrow_exception(result.error);
+  if (result.ending == runtime::Ending::tick_error || result.ending == runtime::Ending::part_error)
+    std::rethrow_exception(result.error);
 
   const runtime::RunStatistics& statistics = session.statistics();
   ordered_json metrics = ordered_json::object();
@@ -175,7 +176,7 @@ int compare(const CompareArguments& arguments, bool json) {
     Session session(readFor(label), program.registry());
     name = session.stack().name;
     seed = session.stack().run.seed;
-    std::vector<runtime::Observer*> sampling;
+    std::vector<control::Observer*> sampling;
     if (back_ends.empty()) sampling.push_back(&sampler);
     back_ends.push_back({{"backend", label}, {"closed_loop", closedLoop(session, label, sampling, interrupt.stop())}});
     if (interrupt.stop()) throw Interrupted();

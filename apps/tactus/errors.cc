@@ -8,6 +8,7 @@
 #include "framework/control/controller.h"
 #include "framework/dynamics/model.h"
 #include "framework/runtime/file_error.h"
+#include "framework/runtime/part_error.h"
 #include "framework/runtime/plant.h"
 #include "framework/runtime/plugin_loader.h"
 
@@ -67,6 +68,8 @@ int reportErrors(const Context& context) {
   } catch (const runtime::PluginError& error) {
     return say(context, exit_plugin, error.what());
   } catch (const control::TickError& error) {
+    return say(context, exit_plugin, error.what());
+  } catch (const runtime::PartError& error) {
     return say(context, exit_plugin, error.what());
   } catch (const dynamics::ModelError& error) {
     return say(context, exit_invalid_stack, located(error.place, error.what()));

@@ -90,7 +90,7 @@ int explainTick(const ExplainTickArguments& arguments, bool json) {
   ordered_json data = xrayToJson({time, "", controller.problem(), controller.solution()}, session);
   std::string conflict;
   if (controller.solution().status == control::Status::infeasible) {
-    const control::ConflictNames names{controller.model().jointNames(), taskPlaces(session.stack())};
+    const control::ConflictNames names{controller.model().jointNames(), session.taskPlaces()};
     const control::Conflict found = control::findConflict(controller.problem());
     conflict = control::describe(found, controller.problem(), names);
     data["conflict"] = conflictToJson(found, controller.problem(), names);

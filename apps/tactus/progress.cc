@@ -22,7 +22,7 @@ Progress::~Progress() {
   if (terminal_) std::fputs("\r\033[K", stderr);
 }
 
-void Progress::observe(const runtime::ObservedTick& tick) {
+void Progress::observe(const control::ObservedTick& tick) {
   if (!terminal_) return;
   const auto now = Clock::now();
   if (now - shown_ < interval) return;

@@ -3,18 +3,18 @@
 #include <chrono>
 #include <string>
 
-#include "framework/runtime/observer.h"
+#include "framework/control/observer.h"
 
 namespace tactus::app {
 
 /// One line on stderr, at most ten times a second, and only when stderr is a terminal: simulated time and the
 /// real-time factor.
-class Progress final : public runtime::Observer {
+class Progress final : public control::Observer {
  public:
   explicit Progress(double duration, std::string label = "");
   ~Progress() override;
 
-  void observe(const runtime::ObservedTick& tick) override;
+  void observe(const control::ObservedTick& tick) override;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -11,6 +11,7 @@
 #include "apps/tactus/xray_view.h"
 #include "dsl/read_stack.h"
 #include "framework/runtime/file_error.h"
+#include "framework/runtime/part_error.h"
 
 namespace tactus::app {
 namespace {
@@ -32,6 +33,7 @@ int exitCodeOf(const Session& session, runtime::Ending ending) {
     case runtime::Ending::interrupted: return exit_interrupted;
     case runtime::Ending::plant_error: return exit_numerical;
     case runtime::Ending::tick_error: return exit_plugin;
+    case runtime::Ending::part_error: return exit_plugin;
     case runtime::Ending::file_error: return exit_files;
   }
   return exit_numerical;
@@ -44,11 +46,19 @@ runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers
   try {
     runtime::writeFile(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
     const auto recorder = session.recordInto(folder);
+    const std::vector<control::Observer*> own = session.startRecorders(folder);
     {
       Progress progress(session.stack().run.duration);
-      result = session.run({recorder.get(), &keepers.capsules, &keepers.xrays, &progress}, stop);
+      std::vector<control::Observer*> observers{recorder.get(), &keepers.capsules, &keepers.xrays, &progress};
+      observers.insert(observers.end(), own.begin(), own.end());
+      result = session.run(observers, stop);
     }
-    if (result.ending != runtime::Ending::file_error) recorder->close();
+    if (result.ending == runtime::Ending::file_error) return result;
+    recorder->close();
+    for (control::Observer* one : own) one->close();
+  } catch (const runtime::PartError& error) {
+    result.ending = runtime::Ending::part_error;
+    result.message = error.what();
   } catch (const runtime::FileError& error) {
     result.ending = runtime::Ending::file_error;
     result.message = error.what();

@@ -24,6 +24,7 @@ const char* statusText(runtime::Ending ending) {
     case runtime::Ending::interrupted: return "interrupted";
     case runtime::Ending::plant_error: return "plant-error";
     case runtime::Ending::tick_error: return "tick-error";
+    case runtime::Ending::part_error: return "part-error";
     case runtime::Ending::file_error: return "file-error";
   }
   return "";

@@ -19,7 +19,7 @@ double norm(const Eigen::LLT<Eigen::MatrixXd>& mass, const VectorXd& torque) {
 
 }  // namespace
 
-void ProblemSampler::observe(const runtime::ObservedTick& tick) {
+void ProblemSampler::observe(const control::ObservedTick& tick) {
   if (ticks_++ % every_ != 0) return;
   problems_.push_back(tick.controller.problem());
   times_.push_back(tick.sensed.time);

@@ -3,16 +3,16 @@
 #include <vector>
 
 #include "framework/control/back_end.h"
-#include "framework/runtime/observer.h"
+#include "framework/control/observer.h"
 
 /// Back ends on the same tick problems: what they answer, apart from where their answers would lead.
 namespace tactus::app {
 
 /// Keeps every k-th tick problem of a run.
-class ProblemSampler final : public runtime::Observer {
+class ProblemSampler final : public control::Observer {
  public:
   explicit ProblemSampler(long every) : every_(every) {}
-  void observe(const runtime::ObservedTick& tick) override;
+  void observe(const control::ObservedTick& tick) override;
   const std::vector<control::TickProblem>& problems() const { return problems_; }
   const std::vector<double>& times() const { return times_; }      ///< of the problems, s
 

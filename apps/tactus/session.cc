@@ -8,13 +8,17 @@
 #include "dsl/compile.h"
 #include "framework/control/element_values.h"
 #include "framework/runtime/feature_truth.h"
+#include "sim/simbody_plant.h"
 
 namespace tactus::app {
 namespace {
 
-std::unique_ptr<sim::SimbodyPlant> makePlant(const dsl::Stack& stack, const description::Scene& scene) {
+std::unique_ptr<runtime::SensingPlant> makePlant(const dsl::Stack& stack, const control::Registry& registry,
+                                                 const description::Scene& scene) {
   try {
-    return std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q);
+    return std::make_unique<runtime::SensingPlant>(
+        std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q),
+        dsl::makeSensors(stack, registry, scene, stack.run.seed));
   } catch (const runtime::PlantError& error) {
     dsl::Diagnostic diagnostic;
     diagnostic.code = dsl::code::unfit_for_dynamics.id;
@@ -26,22 +30,12 @@ std::unique_ptr<sim::SimbodyPlant> makePlant(const dsl::Stack& stack, const desc
 
 }  // namespace
 
-std::map<std::string, std::string> taskPlaces(const dsl::Stack& stack) {
-  std::map<std::string, std::string> places;
-  for (const dsl::LevelDescription& level : stack.levels) {
-    for (const dsl::ElementInstance& task : level.tasks) {
-      places[task.name] =
-          task.place.file + ":" + std::to_string(task.place.line) + ":" + std::to_string(task.place.column);
-    }
-  }
-  return places;
-}
-
 Session::Session(dsl::Stack stack, const control::Registry& registry)
     : stack_(std::move(stack)),
+      registry_(registry),
       scene_(stack_.scene(stack_.run.seed)),
       controller_(dsl::compile(stack_, registry)),
-      plant_(makePlant(stack_, scene_)),
+      plant_(makePlant(stack_, registry, scene_)),
       statistics_(std::lround(stack_.run.duration / controller_->period())) {
   contacts_ = std::make_unique<runtime::ContactMetrics>(static_cast<int>(stack_.robot.links.size()),
                                                         static_cast<int>(scene_.objects.size()), desiredLinks());
@@ -49,6 +43,20 @@ Session::Session(dsl::Stack stack, const control::Registry& registry)
     touched_points_ = findPort<control::TouchedPoints>(i, "points");
   }
   findFeatures();
+}
+
+std::map<std::string, std::string> Session::taskPlaces() const {
+  const auto text = [](const description::Place& place) {
+    return place.file + ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
+  };
+  std::map<std::string, std::string> places;
+  for (size_t i = 0; i < stack_.levels.size(); ++i) {
+    for (const dsl::ElementInstance& task : stack_.levels[i].tasks) places[task.name] = text(task.place);
+    if (!stack_.levels[i].controller) continue;
+    for (const control::NamedTask& owned : controller_->levels()[i].tasks)
+      places[owned.name] = text(stack_.levels[i].controller->place);
+  }
+  return places;
 }
 
 template <class T>
@@ -83,8 +91,8 @@ void Session::findFeatures() {
   }
 }
 
-runtime::LoopResult Session::run(const std::vector<runtime::Observer*>& others, const std::atomic<bool>& stop) {
-  std::vector<runtime::Observer*> observers{contacts_.get(), &statistics_};
+runtime::LoopResult Session::run(const std::vector<control::Observer*>& others, const std::atomic<bool>& stop) {
+  std::vector<control::Observer*> observers{contacts_.get(), &statistics_};
   observers.insert(observers.end(), others.begin(), others.end());
   return runtime::runLoop(*plant_, *controller_, stack_.run.duration, observers, stop);
 }
@@ -99,9 +107,17 @@ std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder
   return std::make_unique<runtime::Recorder>(options);
 }
 
+std::vector<control::Observer*> Session::startRecorders(const std::string& folder) {
+  recorders_ = dsl::makeRecorders(stack_, registry_, *controller_, folder);
+  std::vector<control::Observer*> started;
+  for (const auto& recorder : recorders_) started.push_back(recorder.get());
+  return started;
+}
+
 std::vector<control::Metric> Session::metrics() const {
   std::vector<control::Metric> metrics = contacts_->metrics();
   for (const control::Level& level : controller_->levels()) {
+    if (level.owner.controller) level.owner.controller->metrics(metrics);
     for (const control::NamedTask& named : level.tasks) named.task->metrics(metrics);
   }
   for (const control::NamedSignal& named : controller_->signals()) named.signal->metrics(metrics);
@@ -119,6 +135,8 @@ std::vector<std::string> Session::warnings() const {
   for (const control::SwitchedOff& fault : controller_->switchedOff())
     warnings.push_back("task '" + fault.task + "' was switched off at t = " + control::formatNumber(fault.time) + " s: " +
                        fault.reason);
+  for (const auto& recorder : recorders_)
+    if (!recorder->fault().empty()) warnings.push_back(recorder->fault() + "; it recorded nothing more");
   const std::vector<control::Metric> figures = metrics();
   for (const dsl::TargetDescription& target : stack_.run.targets) {
     const bool known = std::any_of(figures.begin(), figures.end(),
@@ -130,6 +148,8 @@ std::vector<std::string> Session::warnings() const {
 
 int Session::faultCode() const {
   const auto& off = controller_->switchedOff();
+  const auto failed = [](const auto& recorder) { return !recorder->fault().empty(); };
+  if (std::any_of(recorders_.begin(), recorders_.end(), failed)) return exit_plugin;
   if (std::any_of(off.begin(), off.end(), [](const control::SwitchedOff& fault) { return fault.threw; })) return exit_plugin;
   return off.empty() && statistics_.unusableTasks().empty() ? exit_done : exit_numerical;
 }

@@ -11,10 +11,11 @@
 #include "dsl/stack.h"
 #include "framework/control/controller.h"
 #include "framework/runtime/contact_metrics.h"
+#include "framework/runtime/guarded_observer.h"
 #include "framework/runtime/loop.h"
 #include "framework/runtime/recorder.h"
 #include "framework/runtime/run_statistics.h"
-#include "sim/simbody_plant.h"
+#include "framework/runtime/sensing_plant.h"
 
 namespace tactus::app {
 
@@ -25,21 +26,20 @@ struct SoughtFeature {
   std::optional<Eigen::Vector3d> truth_W;                          ///< none: no such object, or it has no top
 };
 
-/// Where each task stands in the stack: "file:line:column".
-std::map<std::string, std::string> taskPlaces(const dsl::Stack& stack);
-
 /// A stack brought to life once: scene of its seed, controller, plant, and the watchers of the run.
 class Session {
  public:
-  /// Throws dsl::InvalidStack; a robot that the plant refuses is one, too.
+  /// Throws dsl::InvalidStack; a robot that the plant refuses is one, too.  The registry outlives the session.
   Session(dsl::Stack stack, const control::Registry& registry);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   /// Runs for the stack's duration; `others` observe after contacts and statistics.
-  runtime::LoopResult run(const std::vector<runtime::Observer*>& others, const std::atomic<bool>& stop);
+  runtime::LoopResult run(const std::vector<control::Observer*>& others, const std::atomic<bool>& stop);
   /// A recorder of this session as the stack asks for it, which writes into `folder`.
   std::unique_ptr<runtime::Recorder> recordInto(const std::string& folder) const;
+  /// The stack's own recorders, which write into `folder`; `run` does not close them.
+  std::vector<control::Observer*> startRecorders(const std::string& folder);
   /// Figures of the run so far: contacts, tasks, signals, features.
   std::vector<control::Metric> metrics() const;
 
@@ -49,6 +49,9 @@ class Session {
   /// The exit code that faults of tasks call for: exit_plugin when one threw and was switched off, exit_numerical when
   /// the numbers of one were none, exit_done without a fault.
   int faultCode() const;
+
+  /// Where each task stands in the stack, "file:line:column"; a controller's tasks stand where it does.
+  std::map<std::string, std::string> taskPlaces() const;
 
   const dsl::Stack& stack() const { return stack_; }
   control::Controller& controller() { return *controller_; }
@@ -68,9 +71,11 @@ class Session {
   void findFeatures();
 
   dsl::Stack stack_;
+  const control::Registry& registry_;
   description::Scene scene_;
   std::unique_ptr<control::Controller> controller_;
-  std::unique_ptr<sim::SimbodyPlant> plant_;
+  std::unique_ptr<runtime::SensingPlant> plant_;
+  std::vector<std::unique_ptr<runtime::GuardedObserver>> recorders_;
   std::unique_ptr<runtime::ContactMetrics> contacts_;
   const control::TouchedPoints* touched_points_ = nullptr;
   std::vector<SoughtFeature> features_;

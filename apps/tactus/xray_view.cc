@@ -63,7 +63,7 @@ ordered_json taskToJson(const control::TaskXray& task, const control::TickProble
     faded.push_back({{"sigma", direction.sigma}, {"weight", direction.weight}});
   ordered_json json{{"level", level.priority},
                     {"name", name},
-                    {"place", taskPlaces(session.stack())[name]},
+                    {"place", session.taskPlaces()[name]},
                     {"rows", task.rows},
                     {"wanted", task.wanted},
                     {"granted", task.granted},
@@ -223,7 +223,7 @@ std::string xrayText(const JsonPlace& xray) {
   return text;
 }
 
-void XrayKeeper::observe(const runtime::ObservedTick& tick) {
+void XrayKeeper::observe(const control::ObservedTick& tick) {
   if (tick.controller.record().sensing.blind) return;              // there was no problem
   const control::TickProblem& problem = tick.controller.problem();
   const control::TickSolution& solution = tick.controller.solution();

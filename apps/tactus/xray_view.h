@@ -35,10 +35,10 @@ std::vector<std::string> xraySentences(const JsonPlace& xray);
 std::string xrayText(const JsonPlace& xray);
 
 /// Keeps the tick in which the levels lost the most rank; the last one is in the session.
-class XrayKeeper final : public runtime::Observer {
+class XrayKeeper final : public control::Observer {
  public:
   explicit XrayKeeper(const Session& session) : session_(session) {}
-  void observe(const runtime::ObservedTick& tick) override;
+  void observe(const control::ObservedTick& tick) override;
   /// {format, xrays: [that of the largest loss, that of the last tick]}; none before the first tick.  After a tick that
   /// threw the session holds only a part of one: no x-ray of it.
   nlohmann::ordered_json describe(bool threw) const;

@@ -74,5 +74,7 @@ template <>
 struct PortType<FrameSet> { static constexpr const char* name = "frame-set"; };
 template <>
 struct PortType<double> { static constexpr const char* name = "scalar"; };
+template <>
+struct PortType<Eigen::VectorXd> { static constexpr const char* name = "vector"; };
 
 }  // namespace tactus::control

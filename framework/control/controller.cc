@@ -81,11 +81,13 @@ TickProblem makeProblemShape(const dynamics::Model& model, const std::vector<Lev
 
 Controller::Controller(std::shared_ptr<const dynamics::Model> model, std::vector<NamedSignal> signals,
                        std::vector<Level> levels, std::unique_ptr<BackEnd> back_end, double period,
-                       const Eigen::Vector3d& gravity_W, const ControllerOptions& options)
+                       const Eigen::Vector3d& gravity_W, const ControllerOptions& options,
+                       std::unique_ptr<Readings> readings)
     : model_(std::move(model)),
       signals_(std::move(signals)),
       levels_(std::move(levels)),
       back_end_(std::move(back_end)),
+      readings_(readings ? std::move(readings) : std::make_unique<Readings>()),
       period_(period),
       options_(options),
       cache_(*model_, gravity_W),
@@ -101,6 +103,7 @@ Controller::Controller(std::shared_ptr<const dynamics::Model> model, std::vector
 const Eigen::VectorXd& Controller::tick(const Sensed& raw) {
   record_ = TickRecord{};
   const Sensed& sensed = sensing_.check(raw);
+  readings_->take(raw.readings);
   record_.sensing = sensing_.record();
   if (record_.sensing.blind)
     bearWeight(sensed);
@@ -180,6 +183,7 @@ void Controller::assembleProblem(const Tick& tick) {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     Level& level = levels_[i];
     if (level.activation.advance(tick.time, tick.dt)) shaper_.startTransfer(level.activation.ramp());
+    if (level.owner.controller && !level.owner.switched_off && level.activation.stands()) steer(tick, i);
     for (std::size_t k = 0; k < level.tasks.size(); ++k) {
       NamedTask& named = level.tasks[k];
       TickTask& rows = problem_.levels[i].tasks[k];
@@ -194,6 +198,22 @@ void Controller::assembleProblem(const Tick& tick) {
       rows.force.head(rows.rows) *= share;
       rows.acceleration.head(rows.rows) *= share;
     }
+  }
+}
+
+void Controller::steer(const Tick& tick, std::size_t index) {
+  Level& level = levels_[index];
+  const auto update = [&] { level.owner.controller->update(tick); };
+  const auto name = [&] { return "controller '" + level.owner.name + "'"; };
+  if (options_.on_fault != OnFault::switch_off)
+    return guarded(TickError::Part::controller, tick.time, update, name);
+  try {
+    guarded(TickError::Part::controller, tick.time, update, name);
+  } catch (const TickError& fault) {
+    level.owner.switched_off = true;
+    for (std::size_t k = 0; k < level.tasks.size(); ++k)
+      if (!level.tasks[k].switched_off)
+        switchOff(tick, level.tasks[k], problem_.levels[index].tasks[k], name() + ": " + fault.reason, true);
   }
 }
 

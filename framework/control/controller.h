@@ -10,6 +10,8 @@
 
 #include "framework/control/activation.h"
 #include "framework/control/back_end.h"
+#include "framework/control/level_controller.h"
+#include "framework/control/readings.h"
 #include "framework/control/sensing_guard.h"
 #include "framework/control/signal.h"
 #include "framework/control/task.h"
@@ -28,11 +30,17 @@ struct NamedTask {
   Activation activation = {};
   bool switched_off = false;                                       ///< by a fault of its own, for good
 };
+struct NamedController {
+  std::string name;                                                ///< "" where a level has none
+  std::unique_ptr<LevelController> controller;
+  bool switched_off = false;                                       ///< with its tasks
+};
 struct Level {
   int priority = 1;
   std::optional<double> weight;
   std::vector<NamedTask> tasks;
   Activation activation = {};                                      ///< of all its tasks, besides their own
+  NamedController owner = {};                                      ///< of its tasks
 };
 
 /// What becomes of a task that throws, breaks its promise, or gives numbers that are none.
@@ -51,7 +59,7 @@ struct ControllerOptions {
   OnFault on_fault = OnFault::fall_back;
 };
 
-/// A task that was switched off by OnFault::switch_off.
+/// A task that was switched off by OnFault::switch_off; all tasks of a controller go with it.
 struct SwitchedOff {
   std::string task;
   double time = 0;                                                 ///< s
@@ -62,7 +70,7 @@ struct SwitchedOff {
 /// A task, signal or back end that threw, or broke its promise, in a tick; the message names it and the time.
 class TickError : public std::runtime_error {
  public:
-  enum class Part { signal, task, back_end };
+  enum class Part { signal, task, controller, back_end };
   /// "task 'hold' failed at t = 0.1 s" and what it said.
   TickError(Part part, const std::string& where, const std::string& reason)
       : std::runtime_error(where + ": " + reason), part(part), reason(reason) {}
@@ -93,8 +101,8 @@ struct TickRecord {
 
 /// The compiled stack: signals in dependency order, levels of tasks, one back end.
 ///
-/// A tick: what was sensed is checked (SensingGuard); dynamics from (q, q̇), signals, tasks, tick problem with the
-/// limits left after b + g, back end, τ* = task torque + b + g; τ follows τ* within limits and rate (TorqueShaper).
+/// A tick: what was sensed is checked (SensingGuard, Readings); dynamics from (q, q̇), signals, the controllers of
+/// levels, tasks, tick problem with the limits left after b + g, back end, τ* = task torque + b + g; τ follows τ* within limits and rate (TorqueShaper).
 /// Takes no memory after construction (as far as the back end takes none).
 ///
 /// Where the back end does not say `ok`, the tick applies, the first that there is: the finite torque that it left
@@ -108,7 +116,8 @@ class Controller {
  public:
   Controller(std::shared_ptr<const dynamics::Model> model, std::vector<NamedSignal> signals,
              std::vector<Level> levels, std::unique_ptr<BackEnd> back_end, double period,
-             const Eigen::Vector3d& gravity_W, const ControllerOptions& options = {});
+             const Eigen::Vector3d& gravity_W, const ControllerOptions& options = {},
+             std::unique_ptr<Readings> readings = nullptr);
 
   /// The torque to hold until the next tick, N m, b + g included, within the actuators' limits, always finite.
   /// Throws TickError.
@@ -136,6 +145,7 @@ class Controller {
   const BackEnd& backEnd() const { return *back_end_; }
   const std::vector<NamedSignal>& signals() const { return signals_; }
   const std::vector<Level>& levels() const { return levels_; }
+  const Readings& readings() const { return *readings_; }
   const Activation& activationOf(std::string_view task) const;
   /// In the order in which it happened.
   const std::vector<SwitchedOff>& switchedOff() const { return switched_off_; }
@@ -151,6 +161,7 @@ class Controller {
   void solveTick(const Sensed& sensed);
   void bearWeight(const Sensed& sensed);
   void assembleProblem(const Tick& tick);
+  void steer(const Tick& tick, std::size_t level);
   void fillRows(const Tick& tick, NamedTask& named, TickTask& rows);
   void switchOff(const Tick& tick, NamedTask& named, TickTask& rows, const std::string& reason, bool threw);
   /// The torque that is wanted, and whose it is.
@@ -163,6 +174,7 @@ class Controller {
   std::vector<NamedSignal> signals_;
   std::vector<Level> levels_;
   std::unique_ptr<BackEnd> back_end_;
+  std::unique_ptr<Readings> readings_;                             // never null
   double period_;
   ControllerOptions options_;
   dynamics::DynamicsCache cache_;

@@ -63,7 +63,15 @@ void checkRow(const ElementRow& row) {
     if (!isElementName(std::string_view(port.name).substr(of_children ? 1 : 0))) refuse(where + ": '" + port.name + "' is not a name for a port");
     if (!ports.insert(port.name).second) refuse(where + ": port '" + port.name + "' stands twice");
   }
-  if (row.kind != ElementKind::signal && !row.ports.empty()) refuse(where + ": only signals have ports");
+  const bool sensor = row.kind == ElementKind::sensor;
+  if (row.kind != ElementKind::signal && !sensor && !row.ports.empty())
+    refuse(where + ": only signals and sensors have ports");
+  for (const AttributeRow& attribute : row.attributes)
+    if (sensor && attribute.type == ValueType::port)
+      refuse(where + ": attribute '" + attribute.name + "': a sensor stands before all signals and reads no ports");
+  for (const PortRow& port : row.ports)
+    if (sensor && port.type != "scalar" && port.type != "vector")
+      refuse(where + ": port '" + port.name + "' of a sensor is a scalar or a vector");
   for (const ChildRow& child : row.children)
     if (child.min < 0 || (child.max >= 0 && child.max < child.min))
       refuse(where + ": child '" + child.element + "' has an empty range");
@@ -73,9 +81,12 @@ void checkRow(const ElementRow& row) {
 
 bool ChildRow::allows(const ElementRow& row) const {
   switch (row.kind) {
-    case ElementKind::task: return element == "@task";
-    case ElementKind::signal: return element == "@signal";
     case ElementKind::shape: return element == "@shape";
+    case ElementKind::sensor: return element == "@sensor";
+    case ElementKind::signal: return element == "@signal";
+    case ElementKind::task: return element == "@task";
+    case ElementKind::controller: return element == "@controller";
+    case ElementKind::recorder: return element == "@recorder";
     case ElementKind::structure: return element == row.name;
     case ElementKind::back_end: break;                             // no element of its own
   }

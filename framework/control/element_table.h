@@ -77,14 +77,14 @@ struct PresenceRule {
 struct ElementRow;
 
 struct ChildRow {
-  std::string element;                                      ///< name, or "@task", "@signal", "@shape" for all of a kind
+  std::string element;                                      ///< name, or "@task", "@signal", "@shape", … for all of a kind
   int min = 0;
   int max = -1;                                                    ///< -1 = any number
 
   bool allows(const ElementRow& row) const;
 };
 
-/// An output that a signal offers, written signal.port.
+/// An output that a signal or a sensor offers, written name.port.
 struct PortRow {
   std::string name;                                                ///< "@child": one for each child of that name
   std::string type;                                                ///< "scalar", "vector", "contact-set", "feature", …
@@ -93,7 +93,7 @@ struct PortRow {
   int dimension = 0;                                               ///< numbers of a value; 0 = as many as there are
 };
 
-enum class ElementKind { structure, shape, task, signal, back_end };
+enum class ElementKind { structure, shape, sensor, signal, task, controller, recorder, back_end };
 
 struct ElementRow {
   std::string name;
@@ -102,7 +102,7 @@ struct ElementRow {
   std::string source = {};                                              ///< equation or paper, "" when it has none
   std::vector<AttributeRow> attributes = {};
   std::vector<ChildRow> children = {};
-  std::vector<PortRow> ports = {};                                      ///< of signals
+  std::vector<PortRow> ports = {};                         ///< of signals; of sensors, "scalar" or "vector"
   std::vector<PresenceRule> presence = {};
   std::string since = {};                                               ///< as for attributes
   std::string deprecated = {};

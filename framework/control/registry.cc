@@ -40,7 +40,14 @@ const Factory& factoryOf(const std::map<std::string, Factory>& factories, const 
   return found->second;
 }
 
-/// What every task and signal has besides its own attributes.
+/// What the factory made, when it made something.
+template <class Made>
+Made made(Made part) {
+  if (!part) throw ElementError("", "its factory made nothing");
+  return part;
+}
+
+/// What everything with a name has besides its own attributes.
 void addBaseAttributes(ElementRow& row) {
   if (!row.attribute("class"))
     row.attributes.insert(row.attributes.begin(),
@@ -53,6 +60,16 @@ void addBaseAttributes(ElementRow& row) {
                            .type = ValueType::identifier,
                            .required = true,
                            .description = "The name under which references, messages and the log know it."});
+}
+
+template <class Factory>
+void addNamed(ElementTable& table, ElementKind kind, ElementRow row, std::map<std::string, Factory>& factories,
+              Factory make) {
+  row.kind = kind;
+  addBaseAttributes(row);
+  const std::string name = row.name;
+  table.add(std::move(row));
+  factories[name] = std::move(make);
 }
 
 }  // namespace
@@ -130,24 +147,47 @@ std::vector<int> BuildContext::joints(const std::string& attribute) const {
   return {found.begin(), found.end()};
 }
 
+std::unique_ptr<Task> BuildContext::task(const std::string& element,
+                                         const std::map<std::string, std::string>& attributes) const {
+  if (!tasks_) throw std::logic_error("only a controller makes tasks of other elements");
+  return tasks_(element, attributes);
+}
+
 void Registry::addStructure(ElementRow row) { elements_.add(std::move(row)); }
 
-void Registry::addTask(ElementRow row, TaskFactory make) {
-  row.kind = ElementKind::task;
-  addBaseAttributes(row);
-  for (AttributeRow& attribute : activityAttributes())
-    if (!row.attribute(attribute.name)) row.attributes.push_back(std::move(attribute));
+void Registry::addShape(ElementRow row, ShapeFactory make) {
+  row.kind = ElementKind::shape;
+  if (!row.attribute("pose"))
+    row.attributes.push_back({.name = "pose",
+                              .type = ValueType::reals,
+                              .unit = "m, rad",
+                              .default_text = "0 0 0",
+                              .description = "Place in the object: x y z, or x y z roll pitch yaw (fixed axes)."});
   const std::string name = row.name;
   elements_.add(std::move(row));
-  tasks_[name] = std::move(make);
+  shapes_[name] = std::move(make);
+}
+
+void Registry::addSensor(ElementRow row, SensorFactory make) {
+  addNamed(elements_, ElementKind::sensor, std::move(row), sensors_, std::move(make));
 }
 
 void Registry::addSignal(ElementRow row, SignalFactory make) {
-  row.kind = ElementKind::signal;
-  addBaseAttributes(row);
-  const std::string name = row.name;
-  elements_.add(std::move(row));
-  signals_[name] = std::move(make);
+  addNamed(elements_, ElementKind::signal, std::move(row), signals_, std::move(make));
+}
+
+void Registry::addTask(ElementRow row, TaskFactory make) {
+  for (AttributeRow& attribute : activityAttributes())
+    if (!row.attribute(attribute.name)) row.attributes.push_back(std::move(attribute));
+  addNamed(elements_, ElementKind::task, std::move(row), tasks_, std::move(make));
+}
+
+void Registry::addController(ElementRow row, ControllerFactory make) {
+  addNamed(elements_, ElementKind::controller, std::move(row), controllers_, std::move(make));
+}
+
+void Registry::addRecorder(ElementRow row, RecorderFactory make) {
+  addNamed(elements_, ElementKind::recorder, std::move(row), recorders_, std::move(make));
 }
 
 void Registry::addBackEnd(ElementRow row, BackEndFactory make) {
@@ -157,17 +197,45 @@ void Registry::addBackEnd(ElementRow row, BackEndFactory make) {
   back_ends_[name] = std::move(make);
 }
 
-std::unique_ptr<Task> Registry::makeTask(const BuildContext& context) const {
-  return factoryOf(tasks_, context.values)(context);
+std::shared_ptr<const geometry::Shape> Registry::makeShape(const ElementValues& values) const {
+  return made(factoryOf(shapes_, values)(values));
+}
+
+std::unique_ptr<Sensor> Registry::makeSensor(const SensorContext& context) const {
+  return made(factoryOf(sensors_, context.values)(context));
 }
 
 std::unique_ptr<Signal> Registry::makeSignal(const BuildContext& context) const {
-  return factoryOf(signals_, context.values)(context);
+  return made(factoryOf(signals_, context.values)(context));
+}
+
+std::unique_ptr<Task> Registry::makeTask(const BuildContext& context) const {
+  auto task = made(factoryOf(tasks_, context.values)(context));
+  if (task->capacity() < 0)
+    throw ElementError("", "the task says that it has at most " + std::to_string(task->capacity()) + " rows");
+  return task;
+}
+
+ControlledLevel Registry::makeController(const BuildContext& context) const {
+  ControlledLevel level = factoryOf(controllers_, context.values)(context);
+  if (!level.controller) throw ElementError("", "its factory made nothing");
+  std::set<std::string> names;
+  std::string error;
+  for (const OwnedTask& owned : level.tasks) {
+    if (!owned.task) throw ElementError("", "its task '" + owned.name + "' is none");
+    if (!parseValue({.name = "name", .type = ValueType::identifier}, owned.name, error))
+      throw ElementError("", "'" + owned.name + "' is no name for a task: " + error);
+    if (!names.insert(owned.name).second) throw ElementError("", "it names two tasks '" + owned.name + "'");
+  }
+  return level;
+}
+
+std::unique_ptr<Observer> Registry::makeRecorder(const RecorderContext& context) const {
+  return made(factoryOf(recorders_, context.values)(context));
 }
 
 std::unique_ptr<BackEnd> Registry::makeBackEnd(const ElementValues& values) const {
-  std::unique_ptr<BackEnd> back_end = factoryOf(back_ends_, values)(values);
-  if (!back_end) throw ElementError("", "its factory made no back end");
+  std::unique_ptr<BackEnd> back_end = made(factoryOf(back_ends_, values)(values));
   Recipe recipe{values.row().name, {}};
   for (const auto& [name, value] : values.all()) recipe.options[name] = value.text;
   back_end->setRecipe(std::move(recipe));

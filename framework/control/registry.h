@@ -11,6 +11,9 @@
 #include "framework/control/contact_set.h"
 #include "framework/control/element_table.h"
 #include "framework/control/element_values.h"
+#include "framework/control/level_controller.h"
+#include "framework/control/observer.h"
+#include "framework/control/sensor.h"
 #include "framework/control/signal.h"
 #include "framework/control/task.h"
 #include "framework/description/robot.h"
@@ -39,9 +42,16 @@ class BuildContext {
  public:
   using PortLookup = std::function<const void*(const std::string& attribute, const std::string& reference,
                                                const std::string& port_type)>;
+  using TaskMaker = std::function<std::unique_ptr<Task>(const std::string& element,
+                                                        const std::map<std::string, std::string>& attributes)>;
   BuildContext(const ElementValues& values, const description::Robot& robot, const dynamics::Model& model,
-               double control_period, PortLookup ports)
-      : values(values), robot(robot), model(model), control_period(control_period), ports_(std::move(ports)) {}
+               double control_period, PortLookup ports, TaskMaker tasks = {})
+      : values(values),
+        robot(robot),
+        model(model),
+        control_period(control_period),
+        ports_(std::move(ports)),
+        tasks_(std::move(tasks)) {}
 
   const ElementValues& values;
   const description::Robot& robot;
@@ -70,15 +80,41 @@ class BuildContext {
   /// Indices into q of joints and joint groups, rising, each once.
   std::vector<int> joints(const std::string& attribute) const;
 
+  /// A task of another element, for controllers: as if the stack gave it these attributes.
+  /// Throws ElementError where its values are wrong or it refuses them.
+  std::unique_ptr<Task> task(const std::string& element, const std::map<std::string, std::string>& attributes) const;
+
  private:
   PortLookup ports_;
+  TaskMaker tasks_;
+};
+
+/// What the factory of a sensor may look at.  A sensor reads no ports.
+struct SensorContext : BuildContext {
+  SensorContext(BuildContext context, const description::Scene& scene, std::uint64_t seed)
+      : BuildContext(std::move(context)), scene(scene), seed(seed) {}
+  const description::Scene& scene;                                 ///< as the run's seed drew it
+  std::uint64_t seed;                                              ///< its own, of the run's seed and its name
+};
+
+/// What the factory of a recorder may look at; ports are those of the controller's signals.
+struct RecorderContext : BuildContext {
+  RecorderContext(BuildContext context, const Controller& controller, std::string folder)
+      : BuildContext(std::move(context)), controller(controller), folder(std::move(folder)) {}
+  const Controller& controller;                                    ///< before its first tick; outlives the recorder
+  std::string folder;                                              ///< of the run: files of a recorder go there
 };
 
 /// When a task or a level takes part (see ActiveWhen): `active`, `active-from`, `active-until`, `active-ramp`.
 std::vector<AttributeRow> activityAttributes();
 
+/// Throws, besides ElementError, std::invalid_argument.
+using ShapeFactory = std::function<std::shared_ptr<const geometry::Shape>(const ElementValues&)>;
+using SensorFactory = std::function<std::unique_ptr<Sensor>(const SensorContext&)>;
 using TaskFactory = std::function<std::unique_ptr<Task>(const BuildContext&)>;
 using SignalFactory = std::function<std::unique_ptr<Signal>(const BuildContext&)>;
+using ControllerFactory = std::function<ControlledLevel(const BuildContext&)>;
+using RecorderFactory = std::function<std::unique_ptr<Observer>(const RecorderContext&)>;
 /// Values are those of the back end's row.
 using BackEndFactory = std::function<std::unique_ptr<BackEnd>(const ElementValues&)>;
 
@@ -87,22 +123,37 @@ using BackEndFactory = std::function<std::unique_ptr<BackEnd>(const ElementValue
 class Registry {
  public:
   void addStructure(ElementRow row);
-  /// Tasks and signals get the attributes `name` (required) and `class` besides their own, tasks also those of
-  /// `activityAttributes`.
-  void addTask(ElementRow row, TaskFactory make);
+  /// A solid that objects of the scene are made of; gets the attribute `pose` besides its own.
+  void addShape(ElementRow row, ShapeFactory make);
+  /// Sensors, signals, tasks, controllers and recorders get the attributes `name` (required) and `class` besides their
+  /// own, tasks also those of `activityAttributes`.
+  void addSensor(ElementRow row, SensorFactory make);
   void addSignal(ElementRow row, SignalFactory make);
+  void addTask(ElementRow row, TaskFactory make);
+  /// A controller owns a whole level.
+  void addController(ElementRow row, ControllerFactory make);
+  void addRecorder(ElementRow row, RecorderFactory make);
   void addBackEnd(ElementRow row, BackEndFactory make);
 
   const ElementTable& elements() const { return elements_; }
-  std::unique_ptr<Task> makeTask(const BuildContext& context) const;      ///< by context.values.row().name
+  /// By values.row().name, all of them.  A factory that makes nothing is an ElementError.
+  std::shared_ptr<const geometry::Shape> makeShape(const ElementValues& values) const;
+  std::unique_ptr<Sensor> makeSensor(const SensorContext& context) const;
   std::unique_ptr<Signal> makeSignal(const BuildContext& context) const;
+  std::unique_ptr<Task> makeTask(const BuildContext& context) const;
+  ControlledLevel makeController(const BuildContext& context) const;
+  std::unique_ptr<Observer> makeRecorder(const RecorderContext& context) const;
   std::unique_ptr<BackEnd> makeBackEnd(const ElementValues& values) const;  ///< with its recipe
   std::vector<std::string> names(ElementKind kind) const;
 
  private:
   ElementTable elements_;
-  std::map<std::string, TaskFactory> tasks_;
+  std::map<std::string, ShapeFactory> shapes_;
+  std::map<std::string, SensorFactory> sensors_;
   std::map<std::string, SignalFactory> signals_;
+  std::map<std::string, TaskFactory> tasks_;
+  std::map<std::string, ControllerFactory> controllers_;
+  std::map<std::string, RecorderFactory> recorders_;
   std::map<std::string, BackEndFactory> back_ends_;
 };
 

@@ -22,6 +22,7 @@ struct Sensed {
   Eigen::VectorXd q;                                               ///< rad or m, dof
   Eigen::VectorXd qd;                                              ///< dof
   std::vector<ContactRecord> contacts;                             ///< in the plant's fixed order
+  Eigen::VectorXd readings;                                        ///< of the sensors' ports (see Readings)
 };
 
 }  // namespace tactus::control

@@ -1,39 +1,18 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "framework/description/place.h"
+#include "framework/geometry/shape.h"
 
 /// The world around the robot as plain data.  SI units, world frame W, z up.
 namespace tactus::description {
 
-/// The half space below z = 0 of its own frame; its outward normal is +z.
-struct PlanePrimitive {};
-/// Full edge lengths (m).
-struct BoxPrimitive {
-  Eigen::Vector3d size;
-};
-struct SpherePrimitive {
-  double radius;
-};
-/// Axis along z of its own frame, centred; `length` is the full height.
-struct CylinderPrimitive {
-  double radius;
-  double length;
-};
-/// Axis along z, centred; `length` is that of the straight part.
-struct CapsulePrimitive {
-  double radius;
-  double length;
-};
-
-using PrimitiveShape = std::variant<PlanePrimitive, BoxPrimitive, SpherePrimitive, CylinderPrimitive, CapsulePrimitive>;
-
 struct Primitive {
-  PrimitiveShape shape;
+  std::shared_ptr<const geometry::Shape> shape;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< in the object frame
 };
 

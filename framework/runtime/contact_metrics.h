@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "framework/control/tick.h"
-#include "framework/runtime/observer.h"
+#include "framework/control/observer.h"
 
 namespace tactus::runtime {
 
@@ -40,7 +40,7 @@ class TouchSwitch {
 /// | contact_switches_per_s     | changes of TouchSwitch, on and off, of all desired links, over the time counted  |
 ///
 /// What was never met (no desired touch at all) is NaN.
-class ContactMetrics final : public Observer {
+class ContactMetrics final : public control::Observer {
  public:
   /// This tick's figures, for the log.
   struct Now {
@@ -54,7 +54,7 @@ class ContactMetrics final : public Observer {
   /// `desired_links` are indices into Robot::links.
   ContactMetrics(int links, int objects, const std::vector<int>& desired_links);
 
-  void observe(const ObservedTick& tick) override { update(tick.sensed.contacts, tick.controller.period()); }
+  void observe(const control::ObservedTick& tick) override { update(tick.truth.contacts, tick.controller.period()); }
   void update(const std::vector<control::ContactRecord>& records, double dt);
 
   const Now& now() const { return now_; }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/runtime/contact_metrics.h"
-#include "framework/runtime/observer.h"
+#include "framework/control/observer.h"
 
 namespace tactus::runtime {
 
@@ -20,7 +20,9 @@ enum class ColumnSet {
 ///     level/<priority>/{rank,nullity,active,residual}
 ///     task/<name>/error, task/<name>/<the task's own>
 ///     task/<name>/share                                     of tasks that the stack switches on and off
+///     level/<priority>/<controller>/<the controller's own>
 ///     signal/<name>/<the signal's own>
+///     sensor/<name>/<port>, or <port>/0, <port>/1, … of a vector of at most 6 numbers; all of it in the set `all`
 ///     contact/{contacts,links,mean_N,max_N,undesired_max_N}
 ///     controller/{torque_norm,scale,status,fallback,limited}
 ///     controller/rate_limited, controller/late              when the controller declares a torque rate, a deadline
@@ -31,7 +33,7 @@ enum class ColumnSet {
 /// No column depends on wall-clock time: a log repeats to the byte.
 class LogColumns {
  public:
-  using Value = std::function<double(const ObservedTick&)>;
+  using Value = std::function<double(const control::ObservedTick&)>;
 
   /// Made from the first tick: what a back end tells is known only after it has solved once.
   /// `contacts` may be null; controller and contacts must outlive this object.
@@ -39,12 +41,13 @@ class LogColumns {
 
   const std::vector<std::string>& names() const { return names_; }
   size_t size() const { return values_.size(); }
-  double value(size_t column, const ObservedTick& tick) const { return values_[column](tick); }
+  double value(size_t column, const control::ObservedTick& tick) const { return values_[column](tick); }
 
  private:
   void add(std::string name, Value value);
   void addLevels(const control::Controller& controller);
   void addTasksAndSignals(const control::Controller& controller);
+  void addSensors(const control::Readings& readings, ColumnSet set);
   void addContacts(const ContactMetrics& contacts);
   void addController(const control::Controller& controller);
   void addJoints(const control::Controller& controller);

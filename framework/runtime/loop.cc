@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/runtime/file_error.h"
+#include "framework/runtime/part_error.h"
 
 namespace tactus::runtime {
 namespace {
@@ -16,11 +17,11 @@ void endWith(Ending ending, const std::exception& error, LoopResult& result) {
 
 /// The tick; one that throws is shown to the observers first.
 const Eigen::VectorXd& tickOf(control::Controller& controller, const control::Sensed& sensed,
-                              const std::vector<Observer*>& observers) {
+                              const std::vector<control::Observer*>& observers) {
   try {
     return controller.tick(sensed);
   } catch (const control::TickError& error) {
-    for (Observer* observer : observers) observer->broken({sensed, controller, error});
+    for (control::Observer* observer : observers) observer->broken({sensed, controller, error});
     throw;
   }
 }
@@ -28,7 +29,7 @@ const Eigen::VectorXd& tickOf(control::Controller& controller, const control::Se
 }  // namespace
 
 LoopResult runLoop(Plant& plant, control::Controller& controller, double duration,
-                   const std::vector<Observer*>& observers, const std::atomic<bool>& stop) {
+                   const std::vector<control::Observer*>& observers, const std::atomic<bool>& stop) {
   using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
   using Microseconds = std::chrono::duration<double, std::micro>;
@@ -44,17 +45,19 @@ LoopResult runLoop(Plant& plant, control::Controller& controller, double duratio
         break;
       }
       const control::Sensed& sensed = plant.sense();
-      for (Observer* observer : observers) observer->before(controller);
+      for (control::Observer* observer : observers) observer->before(controller);
       const auto before = Clock::now();
       const Eigen::VectorXd& torque = tickOf(controller, sensed, observers);
       const double tick_us = Microseconds(Clock::now() - before).count();
-      for (Observer* observer : observers) observer->observe({sensed, controller, torque, tick_us});
+      for (control::Observer* observer : observers) observer->observe({plant.truth(), sensed, controller, torque, tick_us});
       plant.advance(torque, controller.period());
     }
   } catch (const PlantError& error) {
     endWith(Ending::plant_error, error, result);
   } catch (const control::TickError& error) {
     endWith(Ending::tick_error, error, result);
+  } catch (const PartError& error) {
+    endWith(Ending::part_error, error, result);
   } catch (const FileError& error) {
     endWith(Ending::file_error, error, result);
   }

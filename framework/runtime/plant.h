@@ -21,6 +21,8 @@ class Plant {
 
   /// Positions, velocities and contacts now.  The reference stays valid; the content changes with `advance`.
   virtual const control::Sensed& sense() const = 0;
+  /// What there is, where sensors stand between it and `sense`.
+  virtual const control::Sensed& truth() const { return sense(); }
   /// Holds the joint torques for `duration` seconds.  Throws PlantError, with the state of the last good step kept.
   virtual void advance(const Eigen::VectorXd& torque, double duration) = 0;
 };

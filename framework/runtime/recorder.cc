@@ -17,7 +17,7 @@ Recorder::Recorder(const RecorderOptions& options)
       touched_(options.folder + "/touched_points.csv",
                {"time", "link", "x", "y", "z", "normal_x", "normal_y", "normal_z", "force_N"}) {}
 
-void Recorder::observe(const ObservedTick& tick) {
+void Recorder::observe(const control::ObservedTick& tick) {
   if (!columns_) {
     columns_.emplace(tick.controller, options_.columns, options_.contacts);
     log_.emplace(options_.folder + "/log.csv", columns_->names());

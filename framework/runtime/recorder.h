@@ -22,13 +22,13 @@ struct RecorderOptions {
 ///   timing.csv          time, tick_us: wall-clock time of every tick
 ///   touched_points.csv  time, link, x, y, z (m), normal_x, normal_y, normal_z (out of the robot), force_N
 /// Throws FileError when a file cannot be written.
-class Recorder final : public Observer {
+class Recorder final : public control::Observer {
  public:
   explicit Recorder(const RecorderOptions& options);
 
-  void observe(const ObservedTick& tick) override;
-  /// Writes what is left; without it errors of the last rows are lost.
-  void close();
+  void observe(const control::ObservedTick& tick) override;
+  /// Without it errors of the last rows are lost.
+  void close() override;
 
  private:
   void recordTouchedPoints(const dynamics::Model& model);

@@ -21,7 +21,7 @@ void note(std::vector<Fault>& faults, const std::string& name, double time) {
 
 }  // namespace
 
-void RunStatistics::observe(const ObservedTick& tick) {
+void RunStatistics::observe(const control::ObservedTick& tick) {
   const control::TickRecord& record = tick.controller.record();
   const control::TickSolution& solution = tick.controller.solution();
   keepTime(tick.tick_us);
@@ -54,7 +54,7 @@ void RunStatistics::keepTime(double tick_us) {
   tick_us_.push_back(tick_us);
 }
 
-void RunStatistics::noteSensing(const ObservedTick& tick) {
+void RunStatistics::noteSensing(const control::ObservedTick& tick) {
   const control::SensingGuard& sensing = tick.controller.sensing();
   const dynamics::Model& model = tick.controller.model();
   if (sensing.record().joints_held > 0) {

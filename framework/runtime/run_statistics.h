@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/runtime/observer.h"
+#include "framework/control/observer.h"
 
 namespace tactus::runtime {
 
@@ -16,7 +16,7 @@ struct Fault {
 };
 
 /// How the controller fared over a run: ticks that went another way than the plain one, and its wall-clock times.
-class RunStatistics final : public Observer {
+class RunStatistics final : public control::Observer {
  public:
   /// Wall-clock times that are kept at most, whatever the length of the run.
   static constexpr long most_times = 1 << 21;
@@ -25,7 +25,7 @@ class RunStatistics final : public Observer {
     tick_us_.reserve(static_cast<size_t>(std::clamp(expected_ticks, 0L, most_times)));
   }
 
-  void observe(const ObservedTick& tick) override;
+  void observe(const control::ObservedTick& tick) override;
 
   long ticks() const { return ticks_; }
   /// µs, of every tick; of every 2nd, 4th, … in a run that is longer than `most_times`.
@@ -54,7 +54,7 @@ class RunStatistics final : public Observer {
 
  private:
   void keepTime(double tick_us);
-  void noteSensing(const ObservedTick& tick);
+  void noteSensing(const control::ObservedTick& tick);
 
   long ticks_ = 0;
   long stride_ = 1;                                                ///< every how many-th time is kept

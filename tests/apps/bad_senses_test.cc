@@ -52,7 +52,7 @@ class LyingPlant final : public runtime::Plant {
   Sensed said_;
 };
 
-class Watch final : public runtime::Observer {
+class Watch final : public control::Observer {
  public:
   bool finite = true;
   double largest = 0, largest_step = 0;                            // of the effort limit
@@ -60,7 +60,7 @@ class Watch final : public runtime::Observer {
   long switches = 0;                                               // of ranks of the first level
   long jerks = 0;                                                  // steps beyond 0.1 % of the limit, after 1 s
 
-  void observe(const runtime::ObservedTick& tick) override {
+  void observe(const control::ObservedTick& tick) override {
     const Eigen::ArrayXd share = tick.torque.array() / tick.controller.model().effort().array();
     finite = finite && share.allFinite();
     largest = std::max(largest, share.abs().maxCoeff());

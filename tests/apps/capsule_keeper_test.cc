@@ -17,12 +17,12 @@ using control::Controller;
 using testing::TemporaryFolder;
 
 /// Switches something between two ticks of a run, and takes the back end's time away so that it does not go well.
-class Switch final : public runtime::Observer {
+class Switch final : public control::Observer {
  public:
   static constexpr int after = 60;                                 // ticks
 
   Switch(Session& session, std::function<void(Controller&)> action) : session_(session), action_(std::move(action)) {}
-  void observe(const runtime::ObservedTick&) override {
+  void observe(const control::ObservedTick&) override {
     if (++ticks_ != after) return;
     action_(session_.controller());
     session_.controller().backEnd().setDeadline({.iterations = 0});

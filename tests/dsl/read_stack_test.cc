@@ -8,6 +8,7 @@
 
 #include <filesystem>
 
+#include "framework/geometry/primitives.h"
 #include "tests/dsl/test_elements.h"
 
 namespace tactus::dsl_test {
@@ -172,9 +173,9 @@ TEST(ReadStack, EveryShapeAndMaterialIsRead) {
                       level));
   const auto& object = stack.objects.at(0).object;
   ASSERT_EQ(object.primitives.size(), 5u);
-  EXPECT_EQ(std::get<description::BoxPrimitive>(object.primitives[1].shape).size, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(std::get<description::CylinderPrimitive>(object.primitives[3].shape).length, 6);
-  EXPECT_EQ(std::get<description::CapsulePrimitive>(object.primitives[4].shape).radius, 7);
+  EXPECT_EQ(dynamic_cast<const geometry::Box&>(*object.primitives[1].shape).size(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(dynamic_cast<const geometry::Cylinder&>(*object.primitives[3].shape).length(), 6);
+  EXPECT_EQ(dynamic_cast<const geometry::Capsule&>(*object.primitives[4].shape).radius(), 7);
   EXPECT_EQ(object.primitives[4].pose.translation(), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(object.material.friction, 0.4);
   EXPECT_EQ(stack.objects[0].jitter, Eigen::Vector3d(1, 2, 3));

@@ -54,7 +54,8 @@ void expectSame(const dsl::Stack& a, const dsl::Stack& b) {
     ASSERT_EQ(a.objects[i].object.primitives.size(), b.objects[i].object.primitives.size());
     for (std::size_t k = 0; k < a.objects[i].object.primitives.size(); ++k) {
       EXPECT_EQ(a.objects[i].object.primitives[k].pose.matrix(), b.objects[i].object.primitives[k].pose.matrix());
-      EXPECT_EQ(a.objects[i].object.primitives[k].shape.index(), b.objects[i].object.primitives[k].shape.index());
+      const geometry::Shape &one = *a.objects[i].object.primitives[k].shape, &other = *b.objects[i].object.primitives[k].shape;
+      EXPECT_EQ(typeid(one), typeid(other));
       expectSameValues(a.objects[i].shapes[k], b.objects[i].shapes[k]);
     }
   }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/geometry/primitives.h"
+
 namespace tactus::runtime {
 namespace {
 
@@ -9,7 +11,9 @@ using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-description::Object objectOf(const description::PrimitiveShape& shape, const Vector3d& position = Vector3d::Zero(),
+std::shared_ptr<const geometry::Shape> slab() { return std::make_shared<geometry::Box>(Vector3d(0.6, 0.4, 0.02)); }
+
+description::Object objectOf(const std::shared_ptr<const geometry::Shape>& shape, const Vector3d& position = Vector3d::Zero(),
                              const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity()) {
   description::Object object;
   object.name = "thing";
@@ -28,33 +32,33 @@ void expectNear(const std::optional<Vector3d>& point, const Vector3d& expected) 
 const Eigen::Matrix3d lying = AngleAxisd(M_PI / 2, Vector3d::UnitX()).toRotationMatrix();
 
 TEST(HighestPoint, OfUprightShapesIsTheMiddleOfTheirTops) {
-  expectNear(highestPoint(objectOf(description::SpherePrimitive{0.03}, {0.7, 0.1, 0.2})), {0.7, 0.1, 0.23});
-  expectNear(highestPoint(objectOf(description::BoxPrimitive{{0.6, 0.4, 0.02}}, {1, 2, 3})), {1, 2, 3.01});
-  expectNear(highestPoint(objectOf(description::CylinderPrimitive{0.05, 0.2}, {1, 2, 3})), {1, 2, 3.1});
-  expectNear(highestPoint(objectOf(description::CapsulePrimitive{0.05, 0.2}, {1, 2, 3})), {1, 2, 3.15});
+  expectNear(highestPoint(objectOf(std::make_shared<geometry::Sphere>(0.03), {0.7, 0.1, 0.2})), {0.7, 0.1, 0.23});
+  expectNear(highestPoint(objectOf(slab(), {1, 2, 3})), {1, 2, 3.01});
+  expectNear(highestPoint(objectOf(std::make_shared<geometry::Cylinder>(0.05, 0.2), {1, 2, 3})), {1, 2, 3.1});
+  expectNear(highestPoint(objectOf(std::make_shared<geometry::Capsule>(0.05, 0.2), {1, 2, 3})), {1, 2, 3.15});
 }
 
 TEST(HighestPoint, OfLyingShapesIsTheMiddleOfTheirEdges) {
-  expectNear(highestPoint(objectOf(description::CylinderPrimitive{0.05, 0.2}, {1, 2, 3}, lying)), {1, 2, 3.05});
-  expectNear(highestPoint(objectOf(description::CapsulePrimitive{0.05, 0.2}, {1, 2, 3}, lying)), {1, 2, 3.05});
+  expectNear(highestPoint(objectOf(std::make_shared<geometry::Cylinder>(0.05, 0.2), {1, 2, 3}, lying)), {1, 2, 3.05});
+  expectNear(highestPoint(objectOf(std::make_shared<geometry::Capsule>(0.05, 0.2), {1, 2, 3}, lying)), {1, 2, 3.05});
 }
 
 TEST(HighestPoint, OfATiltedBoxIsItsEdge) {
   const Eigen::Matrix3d tilt = AngleAxisd(M_PI / 4, Vector3d::UnitY()).toRotationMatrix();
-  expectNear(highestPoint(objectOf(description::BoxPrimitive{{0.2, 0.4, 0.2}}, {0, 0, 0}, tilt)),
+  expectNear(highestPoint(objectOf(std::make_shared<geometry::Box>(Vector3d(0.2, 0.4, 0.2)), {0, 0, 0}, tilt)),
              {0, 0, 0.1 * M_SQRT2});
 }
 
 TEST(HighestPoint, OfAUnionIsThatOfItsHighestPart) {
-  description::Object object = objectOf(description::BoxPrimitive{{0.6, 0.4, 0.02}}, {0.7, 0, 0.2});
-  description::Primitive ball{description::SpherePrimitive{0.03}, Isometry3d::Identity()};
+  description::Object object = objectOf(slab(), {0.7, 0, 0.2});
+  description::Primitive ball{std::make_shared<geometry::Sphere>(0.03), Isometry3d::Identity()};
   ball.pose.translation() = Vector3d(0.04, 0.05, 0.01);
   object.primitives.push_back(ball);
   object.pose.linear() = AngleAxisd(M_PI / 2, Vector3d::UnitZ()).toRotationMatrix();
   expectNear(highestPoint(object), {0.7 - 0.05, 0.04, 0.24});
 }
 
-TEST(HighestPoint, APlaneHasNone) { EXPECT_FALSE(highestPoint(objectOf(description::PlanePrimitive{}))); }
+TEST(HighestPoint, APlaneHasNone) { EXPECT_FALSE(highestPoint(objectOf(std::make_shared<geometry::Plane>()))); }
 
 TEST(FeatureMetrics, HorizontalAndVerticalErrorApart) {
   control::FeatureEstimate estimate;

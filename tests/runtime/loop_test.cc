@@ -12,9 +12,9 @@ using tactus::testing::pendulumController;
 using tactus::testing::PendulumPlant;
 
 /// Remembers what it saw, and may raise the stop flag.
-class Witness final : public Observer {
+class Witness final : public control::Observer {
  public:
-  void observe(const ObservedTick& tick) override {
+  void observe(const control::ObservedTick& tick) override {
     times.push_back(tick.sensed.time);
     tick_us_negative |= tick.tick_us < 0;
     if (static_cast<long>(times.size()) == stop_after) stop = true;
@@ -70,8 +70,8 @@ TEST(Loop, PlantErrorEndsTheRunWithItsMessage) {
 }
 
 TEST(Loop, AFileThatCannotBeWrittenEndsTheRunWithItsMessage) {
-  class FullDisk final : public Observer {
-    void observe(const ObservedTick& tick) override {
+  class FullDisk final : public control::Observer {
+    void observe(const control::ObservedTick& tick) override {
       if (tick.sensed.time > 0.0095) throw FileError("log.csv", "no space");
     }
   };
@@ -85,8 +85,8 @@ TEST(Loop, AFileThatCannotBeWrittenEndsTheRunWithItsMessage) {
 }
 
 TEST(Loop, WhatObserversThrowGoesThrough) {
-  class Thrower final : public Observer {
-    void observe(const ObservedTick&) override { throw std::runtime_error("disk full"); }
+  class Thrower final : public control::Observer {
+    void observe(const control::ObservedTick&) override { throw std::runtime_error("disk full"); }
   };
   PendulumPlant plant;
   Thrower thrower;

@@ -108,10 +108,10 @@ TEST(Recorder, TouchedPointsAreWrittenOnce) {
   {
     Recorder recorder(options);
     const Eigen::VectorXd& torque = controller->tick(plant.sense());
-    recorder.observe({plant.sense(), *controller, torque, 1});
+    recorder.observe({plant.sense(), plant.sense(), *controller, torque, 1});
     points.points.push_back({0.25, 1, {1, 2, 3}, {0, 0, -1}, 0.5});
-    recorder.observe({plant.sense(), *controller, torque, 1});
-    recorder.observe({plant.sense(), *controller, torque, 1});
+    recorder.observe({plant.sense(), plant.sense(), *controller, torque, 1});
+    recorder.observe({plant.sense(), plant.sense(), *controller, torque, 1});
     recorder.close();
   }
   EXPECT_EQ(contentOf(folder.file("touched_points.csv")),

@@ -49,7 +49,7 @@ struct SameTick {
     sensed.q = sensed.qd = Eigen::VectorXd::Zero(1);
     controller->tick(sensed);
   }
-  ObservedTick with(double tick_us) const { return {sensed, *controller, sensed.q, tick_us}; }
+  control::ObservedTick with(double tick_us) const { return {sensed, sensed, *controller, sensed.q, tick_us}; }
 };
 
 TEST(RunStatistics, KeepsABoundedNumberOfTimesHoweverLongTheRun) {

@@ -5,6 +5,7 @@
 
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
+#include "framework/geometry/primitives.h"
 
 /// Robots and scenes for tests: a free body as a chain of six joints, single joints, and objects in one line.
 namespace tactus::sim_tests {
@@ -83,7 +84,7 @@ inline description::CapsuleShape capsule(double radius, double length) {
 }
 
 inline description::Object object(const std::string& name, const Eigen::Isometry3d& pose,
-                                  const description::PrimitiveShape& shape) {
+                                  std::shared_ptr<const geometry::Shape> shape) {
   description::Object made;
   made.name = name;
   made.pose = pose;

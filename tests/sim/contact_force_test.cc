@@ -9,7 +9,6 @@
 #include <optional>
 #include <random>
 
-#include "sim/distance.h"
 #include "tests/sim/bodies.h"
 #include "tests/sim/count_allocations.h"
 
@@ -44,14 +43,14 @@ class Random {
   std::mt19937_64 engine_{7};
 };
 
-std::vector<description::PrimitiveShape> shapes() {
-  return {description::PlanePrimitive{}, description::BoxPrimitive{{0.05, 0.08, 0.03}},
-          description::SpherePrimitive{0.03}, description::CylinderPrimitive{0.03, 0.05},
-          description::CapsulePrimitive{0.02, 0.05}};
+std::vector<std::shared_ptr<const geometry::Shape>> shapes() {
+  return {std::make_shared<geometry::Plane>(), std::make_shared<geometry::Box>(Eigen::Vector3d(0.05, 0.08, 0.03)),
+          std::make_shared<geometry::Sphere>(0.03), std::make_shared<geometry::Cylinder>(0.03, 0.05),
+          std::make_shared<geometry::Capsule>(0.02, 0.05)};
 }
 
 /// A capsule that touches the shape by at most a few millimetres, in a random pose, found by drawing.
-BodyMotion touchingPose(const description::PrimitiveShape& shape, const description::CapsuleShape& capsule,
+BodyMotion touchingPose(const geometry::Shape& shape, const description::CapsuleShape& capsule,
                         Random& random) {
   while (true) {
     BodyMotion motion;
@@ -61,7 +60,7 @@ BodyMotion touchingPose(const description::PrimitiveShape& shape, const descript
     for (double t = 0; t <= 1; t += 0.02)
       nearest = std::min(
           nearest,
-          signedDistance(shape, motion.p_WB + motion.R_WB * (capsule.from + t * (capsule.to - capsule.from))).distance);
+          shape.distance(motion.p_WB + motion.R_WB * (capsule.from + t * (capsule.to - capsule.from))).distance);
     const double depth = capsule.radius - nearest;
     if (depth > 1e-4 && depth < 4e-3) return motion;
   }
@@ -70,12 +69,12 @@ BodyMotion touchingPose(const description::PrimitiveShape& shape, const descript
 TEST(ContactForce, NormalsPointOutOfTheRobotAndFrictionOpposesSlip) {
   Random random;
   const description::CapsuleShape capsule = sim_tests::capsule(0.01, 0.05);
-  for (const description::PrimitiveShape& shape : shapes())
+  for (const auto& shape : shapes())
     for (int trial = 0; trial < 200; ++trial) {
       description::Scene scene;
       scene.objects = {object("thing", at(0, 0, 0), shape)};
       ContactForce contact({feature(capsule)}, scene, 1);
-      BodyMotion motion = touchingPose(shape, capsule, random);
+      BodyMotion motion = touchingPose(*shape, capsule, random);
       motion.linear_W = random.inCube(0.1);
       contact.evaluate({motion}, h);
       const auto records = read(contact);
@@ -83,9 +82,9 @@ TEST(ContactForce, NormalsPointOutOfTheRobotAndFrictionOpposesSlip) {
       const control::ContactRecord& record = records[0];
       EXPECT_NEAR(record.normal_W.norm(), 1, 1e-12);
       EXPECT_NEAR(record.normal_W.dot(record.friction_W), 0, 1e-12);
-      EXPECT_NEAR(signedDistance(shape, record.point_W).distance, 0, 1e-9) << "the point lies on the object";
+      EXPECT_NEAR(shape->distance(record.point_W).distance, 0, 1e-9) << "the point lies on the object";
       // Into the object: against its outward normal.  Capsules across an edge have two; their mean still goes inwards.
-      EXPECT_LT(record.normal_W.dot(signedDistance(shape, record.point_W).gradient), 0);
+      EXPECT_LT(record.normal_W.dot(shape->distance(record.point_W).gradient), 0);
       EXPECT_GE(record.force_N, 0);
       // On the robot the force is the opposite of what the robot does to the object.
       const Vector3d force_W = record.force_N * record.normal_W + record.friction_W;
@@ -99,18 +98,18 @@ TEST(ContactForce, NormalsPointOutOfTheRobotAndFrictionOpposesSlip) {
 TEST(ContactForce, ElasticForceIsTheGradientOfAnEnergy) {
   Random random;
   const description::CapsuleShape capsule = sim_tests::capsule(0.01, 0.05);
-  for (const description::PrimitiveShape& shape : shapes())
+  for (const auto& shape : shapes())
     for (int trial = 0; trial < 100; ++trial) {
       description::Scene scene;
       scene.objects = {object("thing", at(0, 0, 0), shape)};
       scene.objects[0].material = {.stiffness = 2000, .dissipation = 0, .friction = 0};
       ContactForce contact({feature(capsule)}, scene, 1);
-      const BodyMotion motion = touchingPose(shape, capsule, random);
+      const BodyMotion motion = touchingPose(*shape, capsule, random);
       // Energy by brute force over t, refined around the best.
       const auto energy = [&](const BodyMotion& m) {
         const auto depth = [&](double t) {
           const Vector3d p = m.p_WB + m.R_WB * (capsule.from + t * (capsule.to - capsule.from));
-          return std::max(0.0, capsule.radius - signedDistance(shape, p).distance);
+          return std::max(0.0, capsule.radius - shape->distance(p).distance);
         };
         const auto interior = [&](double t) { return 4 * t * (1 - t) * depth(t) * depth(t); };
         double best = 0, span = 0.5, middle = 0.5;
@@ -140,7 +139,7 @@ TEST(ContactForce, ElasticForceIsTheGradientOfAnEnergy) {
       const double loss = -(energy(moved(step)) - energy(moved(-step))) / (2 * step);
       const double work = wrench.force_W.dot(shift) + wrench.torque_W.dot(turn);
       EXPECT_NEAR(work, loss, 1e-3 * (wrench.force_W.norm() * shift.norm() + wrench.torque_W.norm() * turn.norm()))
-          << "shape " << shape.index();
+          << typeid(*shape).name();
     }
 }
 
@@ -148,7 +147,7 @@ TEST(ContactForce, ElasticForceIsContinuousInThePose) {
   // A capsule longer than the box under it, rocked through the level: the deepest point jumps from edge to edge,
   // the force must not.
   description::Scene scene;
-  scene.objects = {object("block", at(0, 0, -0.01), description::BoxPrimitive{{0.03, 0.03, 0.02}})};
+  scene.objects = {object("block", at(0, 0, -0.01), std::make_shared<geometry::Box>(Eigen::Vector3d(0.03, 0.03, 0.02)))};
   ContactForce contact({feature(sim_tests::capsule(0.01, 0.08))}, scene, 1);
   std::optional<Vector3d> last_torque_W;
   for (double pitch = -0.02; pitch <= 0.02; pitch += 1e-5) {
@@ -165,7 +164,7 @@ TEST(ContactForce, ElasticForceIsContinuousInThePose) {
 
 TEST(ContactForce, SpherePairFollowsHuntCrossley) {
   description::Scene scene;
-  scene.objects = {object("ball", at(0.1, 0.2, 0.3), description::SpherePrimitive{0.03})};
+  scene.objects = {object("ball", at(0.1, 0.2, 0.3), std::make_shared<geometry::Sphere>(0.03))};
   scene.objects[0].material = {.stiffness = 1500, .dissipation = 3, .friction = 0.4};
   const Vector3d direction = Vector3d(1, -2, 2).normalized();
   for (double depth : {1e-5, 1e-4, 1e-3, 5e-3})
@@ -186,7 +185,7 @@ TEST(ContactForce, SpherePairFollowsHuntCrossley) {
 
 TEST(ContactForce, NormalForceIsCappedAndNeverPulls) {
   description::Scene scene;
-  scene.objects = {object("ground", at(0, 0, 0), description::PlanePrimitive{})};
+  scene.objects = {object("ground", at(0, 0, 0), std::make_shared<geometry::Plane>())};
   scene.objects[0].material.stiffness = 1e6;
   ContactForce contact({feature(sim_tests::sphere(0.01))}, scene, 1, {.force_limit = 50});
   BodyMotion motion;
@@ -201,7 +200,7 @@ TEST(ContactForce, NormalForceIsCappedAndNeverPulls) {
 
 TEST(ContactForce, BristlesLoadUpToCoulombAndForgetOnRelease) {
   description::Scene scene;
-  scene.objects = {object("ground", at(0, 0, 0), description::PlanePrimitive{})};
+  scene.objects = {object("ground", at(0, 0, 0), std::make_shared<geometry::Plane>())};
   scene.objects[0].material = {.stiffness = 2000, .dissipation = 0, .friction = 0.3};
   ContactForce contact({feature(sim_tests::sphere(0.01))}, scene, 1);
   BodyMotion motion;
@@ -230,8 +229,8 @@ TEST(ContactForce, BristlesLoadUpToCoulombAndForgetOnRelease) {
 class SunkSphere : public ::testing::Test {
  protected:
   SunkSphere() {
-    scene_.objects = {object("table", at(0, 0, -0.05), description::BoxPrimitive{{1, 1, 0.1}}),
-                      object("bump", at(0, 0, -0.015), description::SpherePrimitive{0.03})};
+    scene_.objects = {object("table", at(0, 0, -0.05), std::make_shared<geometry::Box>(Eigen::Vector3d(1, 1, 0.1))),
+                      object("bump", at(0, 0, -0.015), std::make_shared<geometry::Sphere>(0.03))};
   }
   std::vector<control::ContactRecord> touch(const Vector3d& centre, double radius) {
     ContactForce contact({feature(sim_tests::sphere(radius))}, scene_, 1);
@@ -275,9 +274,9 @@ TEST_F(SunkSphere, ForceFadesContinuouslyAcrossTheFoot) {
 
 TEST(ContactForce, RecordsComeInTheStatedOrder) {
   description::Scene scene;
-  scene.objects = {object("ground", at(0, 0, 0), description::PlanePrimitive{}),
-                   object("pair", at(0, 0, 0), description::BoxPrimitive{{0.1, 0.1, 1e-3}})};
-  scene.objects[1].primitives.push_back({description::SpherePrimitive{0.02}, at(0, 0, 0)});
+  scene.objects = {object("ground", at(0, 0, 0), std::make_shared<geometry::Plane>()),
+                   object("pair", at(0, 0, 0), std::make_shared<geometry::Box>(Eigen::Vector3d(0.1, 0.1, 1e-3)))};
+  scene.objects[1].primitives.push_back({std::make_shared<geometry::Sphere>(0.02), at(0, 0, 0)});
   const description::CapsuleShape ball = sim_tests::sphere(0.03);
   ContactForce contact({feature(ball, 0), feature(ball, 0), feature(ball, 1)}, scene, 2, {.burial_fade = 1});
   contact.evaluate({{.p_WB = {0, 0, 0.0295}}, {.p_WB = {0.01, 0, 0.0295}}}, h);
@@ -291,11 +290,11 @@ TEST(ContactForce, RecordsComeInTheStatedOrder) {
 
 TEST(ContactForce, AllocatesNothing) {
   description::Scene scene;
-  scene.objects = {object("ground", at(0, 0, 0), description::PlanePrimitive{}),
-                   object("block", at(0, 0, 0), description::BoxPrimitive{{0.2, 0.1, 0.02}}),
-                   object("ball", at(0.02, 0, 0), description::SpherePrimitive{0.03}),
-                   object("can", at(-0.02, 0, 0), description::CylinderPrimitive{0.03, 0.05}),
-                   object("pill", at(0, 0.02, 0), description::CapsulePrimitive{0.02, 0.05})};
+  scene.objects = {object("ground", at(0, 0, 0), std::make_shared<geometry::Plane>()),
+                   object("block", at(0, 0, 0), std::make_shared<geometry::Box>(Eigen::Vector3d(0.2, 0.1, 0.02))),
+                   object("ball", at(0.02, 0, 0), std::make_shared<geometry::Sphere>(0.03)),
+                   object("can", at(-0.02, 0, 0), std::make_shared<geometry::Cylinder>(0.03, 0.05)),
+                   object("pill", at(0, 0.02, 0), std::make_shared<geometry::Capsule>(0.02, 0.05))};
   std::vector<LinkFeature> features;
   std::vector<BodyMotion> motions(10);
   for (int i = 0; i < 10; ++i) features.push_back(feature(sim_tests::capsule(0.012, 0.03), i));

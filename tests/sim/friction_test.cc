@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-description::Scene slope(double angle, double friction, const description::PrimitiveShape& shape,
+description::Scene slope(double angle, double friction, std::shared_ptr<const geometry::Shape> shape,
                          const Eigen::Isometry3d& pose) {
   description::Scene scene;
   scene.objects = {sim_tests::object("slope", pose, shape)};
@@ -23,7 +23,7 @@ class Slope : public ::testing::TestWithParam<double> {
  protected:
   double friction() const { return GetParam(); }
   description::Scene at(double angle) const {
-    return slope(angle, friction(), description::BoxPrimitive{{4, 4, 0.1}}, sim_tests::at(0, 0, -0.05));
+    return slope(angle, friction(), std::make_shared<geometry::Box>(Eigen::Vector3d(4, 4, 0.1)), sim_tests::at(0, 0, -0.05));
   }
   /// Distance slid along the slope from `from` to `to` seconds after being put down.
   static double slide(SimbodyPlant& plant, double from, double to) {
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Mu, Slope, ::testing::Values(0.2, 0.5, 1.0));
 
 TEST(Friction, PushedSidewaysOnATableHoldsAndReleases) {
   // A steady push below μN moves the body only by the bend of a bristle.
-  const description::Scene table = slope(0, 0.5, description::PlanePrimitive{}, Eigen::Isometry3d::Identity());
+  const description::Scene table = slope(0, 0.5, std::make_shared<geometry::Plane>(), Eigen::Isometry3d::Identity());
   SimbodyPlant plant(sim_tests::slidingBody(sim_tests::sphere(0.02)), table, Eigen::Vector3d(0, 0, 0.0195));
   const double weight_N = 9.81 * sim_tests::mass;
   plant.advance(Eigen::Vector3d(0.4 * weight_N, 0, 0), 1);

@@ -41,18 +41,18 @@ description::Scene scene(std::vector<description::Object> objects) {
 }
 
 std::vector<Drop> drops() {
-  const description::BoxPrimitive wall{{0.002, 0.2, 0.04}};
-  const description::CylinderPrimitive log{0.03, 0.3};
-  const description::CapsulePrimitive pill{0.03, 0.3};
-  const description::SpherePrimitive ball{0.03};
+  const auto wall = std::make_shared<geometry::Box>(Eigen::Vector3d(0.002, 0.2, 0.04));
+  const auto log = std::make_shared<geometry::Cylinder>(0.03, 0.3);
+  const auto pill = std::make_shared<geometry::Capsule>(0.03, 0.3);
+  const auto ball = std::make_shared<geometry::Sphere>(0.03);
   description::Object nest = object("nest", at(0, 0, 0), ball);
   nest.primitives.clear();
   for (double x : {-0.025, 0.025})
     for (double y : {-0.02, 0.02}) nest.primitives.push_back({ball, at(x, y, 0)});
   return {
-      {"plane", scene({object("ground", at(0, 0, 0), description::PlanePrimitive{})}),
+      {"plane", scene({object("ground", at(0, 0, 0), std::make_shared<geometry::Plane>())}),
        0.05, 2, 0.1, 0.8, 3},
-      {"box", scene({object("table", at(0, 0, -0.01), description::BoxPrimitive{{0.4, 0.4, 0.02}})}),
+      {"box", scene({object("table", at(0, 0, -0.01), std::make_shared<geometry::Box>(Eigen::Vector3d(0.4, 0.4, 0.02)))}),
        0.05, 2, 0.05, 0.8, 3},
       // Across the walls a body rolls on for ever (there is no rolling resistance), so it falls straight.
       {"two_sharp_walls", scene({object("left", at(-0.03, 0, -0.02), wall), object("right", at(0.03, 0, -0.02), wall)}),

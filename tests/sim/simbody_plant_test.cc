@@ -23,7 +23,7 @@ using sim_tests::object;
 
 description::Scene ground(double dissipation, double friction) {
   description::Scene scene;
-  scene.objects = {object("ground", at(0, 0, 0), description::PlanePrimitive{})};
+  scene.objects = {object("ground", at(0, 0, 0), std::make_shared<geometry::Plane>())};
   scene.objects[0].material = {.stiffness = 2000, .dissipation = dissipation, .friction = friction};
   return scene;
 }
@@ -137,8 +137,8 @@ TEST(Repeatability, TwoPlantsGiveTheSameBytes) {
     robot.joints[1].damping = 0.01;
     robot.joints[1].upper = 0.5;
     description::Scene scene;
-    scene.objects = {object("wall", at(0, 0, -0.98), description::PlanePrimitive{}),
-                     object("ball", at(0.3, 0, -0.9), description::SpherePrimitive{0.1})};
+    scene.objects = {object("wall", at(0, 0, -0.98), std::make_shared<geometry::Plane>()),
+                     object("ball", at(0.3, 0, -0.9), std::make_shared<geometry::Sphere>(0.1))};
     SimbodyPlant plant(robot, scene, Eigen::Vector2d(0.3, 0.1));
     std::mt19937_64 random(3);
     size_t touches = 0;

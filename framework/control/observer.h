@@ -2,21 +2,22 @@
 
 #include "framework/control/controller.h"
 
-namespace tactus::runtime {
+namespace tactus::control {
 
 /// One tick as it happened: what was sensed, what the controller answered.
 struct ObservedTick {
-  const control::Sensed& sensed;
-  const control::Controller& controller;
+  const Sensed& truth;                                             ///< the plant's; `sensed` itself without sensors
+  const Sensed& sensed;
+  const Controller& controller;
   const Eigen::VectorXd& torque;                                   ///< N m, b + g included, held until the next tick
   double tick_us;                                                  ///< wall-clock time of Controller::tick alone
 };
 
 /// A tick that threw, with which the run ends.
 struct BrokenTick {
-  const control::Sensed& sensed;
-  const control::Controller& controller;
-  const control::TickError& error;
+  const Sensed& sensed;
+  const Controller& controller;
+  const TickError& error;
 };
 
 /// Looks at every tick of a run and changes nothing.
@@ -24,10 +25,12 @@ class Observer {
  public:
   virtual ~Observer() = default;
   /// Just before a tick, after all that was switched since the last one.
-  virtual void before(const control::Controller&) {}
+  virtual void before(const Controller&) {}
   virtual void observe(const ObservedTick& tick) = 0;
   /// Instead of `observe`.
   virtual void broken(const BrokenTick&) {}
+  /// After the last tick, however the run ended: write what is left.
+  virtual void close() {}
 };
 
-}  // namespace tactus::runtime
+}  // namespace tactus::control

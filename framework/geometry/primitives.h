@@ -1,0 +1,71 @@
+#pragma once
+
+#include "framework/geometry/shape.h"
+
+/// The convex solids that have a name.  Each has its origin in its middle, but for the plane; distances are exact.
+/// The constructors throw std::invalid_argument for a length that is not finite and above 0.
+namespace tactus::geometry {
+
+/// The half space below z = 0; its outward normal is +z.
+class Plane final : public Shape {
+ public:
+  Plane();
+
+ private:
+  SignedDistance doDistance(const Eigen::Vector3d& p) const override;
+  std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+};
+
+class Box final : public Shape {
+ public:
+  /// Full edge lengths, m.
+  explicit Box(const Eigen::Vector3d& size);
+  const Eigen::Vector3d& size() const { return size_; }
+
+ private:
+  SignedDistance doDistance(const Eigen::Vector3d& p) const override;
+  std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  Eigen::Vector3d size_;
+};
+
+class Sphere final : public Shape {
+ public:
+  explicit Sphere(double radius);
+  double radius() const { return boundingRadius(); }
+
+ private:
+  SignedDistance doDistance(const Eigen::Vector3d& p) const override;
+  std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+};
+
+/// Axis along z.
+class Cylinder final : public Shape {
+ public:
+  /// `length` is the full height, m.
+  Cylinder(double radius, double length);
+  double radius() const { return radius_; }
+  double length() const { return length_; }
+
+ private:
+  SignedDistance doDistance(const Eigen::Vector3d& p) const override;
+  std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  double radius_;
+  double length_;
+};
+
+/// Axis along z.
+class Capsule final : public Shape {
+ public:
+  /// `length` is that of the straight part, m.
+  Capsule(double radius, double length);
+  double radius() const { return radius_; }
+  double length() const { return length_; }
+
+ private:
+  SignedDistance doDistance(const Eigen::Vector3d& p) const override;
+  std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  double radius_;
+  double length_;
+};
+
+}  // namespace tactus::geometry

@@ -1,0 +1,57 @@
+#include "framework/runtime/sensing_plant.h"
+
+#include "framework/control/element_values.h"
+#include "framework/control/sensing_guard.h"
+#include "framework/runtime/part_error.h"
+
+namespace tactus::runtime {
+namespace {
+
+[[noreturn]] void fail(const NamedSensor& sensor, double time, const std::string& reason) {
+  throw PartError("sensor '" + sensor.name + "' failed at t = " + control::formatNumber(time) + " s: " + reason);
+}
+
+int countOf(const std::vector<control::ReadingRow>& rows) {
+  int count = 0;
+  for (const control::ReadingRow& row : rows) count += row.count;
+  return count;
+}
+
+}  // namespace
+
+SensingPlant::SensingPlant(std::unique_ptr<Plant> plant, std::vector<NamedSensor> sensors)
+    : plant_(std::move(plant)), sensors_(std::move(sensors)) {
+  int readings = 0;
+  for (const NamedSensor& sensor : sensors_) readings += countOf(sensor.rows);
+  felt_.contacts.reserve(control::SensingGuard::contact_capacity);
+  felt_.readings.setZero(readings);
+  feel();
+}
+
+void SensingPlant::advance(const Eigen::VectorXd& torque, double duration) {
+  plant_->advance(torque, duration);
+  feel();
+}
+
+void SensingPlant::feel() {
+  if (sensors_.empty()) return;
+  const control::Sensed& truth = plant_->sense();
+  felt_.time = truth.time;
+  felt_.q = truth.q;
+  felt_.qd = truth.qd;
+  felt_.contacts.assign(truth.contacts.begin(), truth.contacts.end());
+  int at = 0;
+  for (const NamedSensor& named : sensors_) {
+    const int count = countOf(named.rows);
+    try {
+      named.sensor->sense(truth, felt_, felt_.readings.segment(at, count));
+    } catch (const std::exception& error) {
+      fail(named, truth.time, error.what());
+    } catch (...) {
+      fail(named, truth.time, "it threw something that is not a std::exception");
+    }
+    at += count;
+  }
+}
+
+}  // namespace tactus::runtime
