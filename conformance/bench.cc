@@ -30,6 +30,7 @@ Bench::Bench(const dsl::Stack& stack, const control::Registry& registry)
   const int dof = controller_->model().dof();
   sensed.q = stack.start_q;
   sensed.qd = Eigen::VectorXd::Zero(dof);
+  sensed.readings = Eigen::VectorXd::Zero(controller_->readings().size());
   for (const control::Level& level : controller_->levels()) {
     for (const control::NamedTask& named : level.tasks) {
       control::TickTask rows(named.name, named.task->capacity(), dof);
@@ -50,12 +51,19 @@ Bench::Bench(const std::string& stack_file, const std::vector<std::string>& plug
 
 control::Tick Bench::sense() {
   cache_.update(sensed.q, sensed.qd);
+  controller_->readings().take(sensed.readings);
   return {sensed.time, period(), sensed, cache_};
+}
+
+void Bench::prepare(const control::Tick& tick) {
+  for (const control::NamedSignal& signal : signals()) signal.signal->update(tick);
+  for (const control::Level& level : controller_->levels())
+    if (level.owner.controller) level.owner.controller->update(tick);
 }
 
 void Bench::tick() {
   const control::Tick tick = sense();
-  for (const control::NamedSignal& signal : signals()) signal.signal->update(tick);
+  prepare(tick);
   for (TaskOnBench& on_bench : tasks_) on_bench.task->update(tick, on_bench.rows);
   endTick();
 }

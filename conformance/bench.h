@@ -45,7 +45,7 @@ class Bench {
   /// What the next tick is told; time is set by `tick`.
   control::Sensed sensed;
 
-  /// All signals in their order, then all tasks; time then goes on by a period.
+  /// All signals in their order, the controllers of levels, then all tasks; time then goes on by a period.
   void tick();
 
   const dynamics::DynamicsCache& robot() const { return cache_; }  ///< at the state of the last tick
@@ -55,7 +55,9 @@ class Bench {
   double period() const { return controller_->period(); }          ///< s
 
   // The parts of `tick`, for who wants to look between them.
-  control::Tick sense();                                           ///< the dynamics at `sensed`
+  control::Tick sense();                                           ///< the dynamics at `sensed`, and what sensors read
+  void prepare(const control::Tick& tick);                         ///< signals, then the controllers of levels
+  const control::Controller& controller() const { return *controller_; }
   const std::vector<control::NamedSignal>& signals() const { return controller_->signals(); }
   struct TaskOnBench {
     std::string name;

@@ -8,6 +8,7 @@
 #include "conformance/specimen.h"
 #include "dsl/compile.h"
 #include "dsl/diagnostic.h"
+#include "framework/runtime/temporary_folder.h"
 
 namespace tactus::conformance {
 namespace {
@@ -18,7 +19,7 @@ using control::ElementRow;
 /// What the stack's reader and compiler ask for, not the factory.
 bool isOfEveryElement(const std::string& attribute) {
   static const std::vector<control::AttributeRow> activity = control::activityAttributes();
-  return attribute == "name" || attribute == "class" ||
+  return attribute == "name" || attribute == "class" || attribute == "pose" ||
          std::any_of(activity.begin(), activity.end(), [&](const auto& row) { return row.name == attribute; });
 }
 
@@ -28,21 +29,34 @@ std::vector<control::ElementValues*> instancesIn(dsl::Stack& stack, const Elemen
   const auto add = [&](control::ElementValues& values) {
     if (values.row().name == row.name && values.row().kind == row.kind) found.push_back(&values);
   };
+  for (dsl::ObjectDescription& object : stack.objects)
+    for (control::ElementValues& shape : object.shapes) add(shape);
+  for (dsl::ElementInstance& sensor : stack.sensors) add(sensor.values);
   for (dsl::ElementInstance& signal : stack.signals) add(signal.values);
-  for (dsl::LevelDescription& level : stack.levels)
+  for (dsl::LevelDescription& level : stack.levels) {
     for (dsl::ElementInstance& task : level.tasks) add(task.values);
+    if (level.controller) add(level.controller->values);
+  }
+  for (dsl::ElementInstance& recorder : stack.run.recorders) add(recorder.values);
   add(stack.back_end);
   return found;
 }
 
 std::string nameOf(const control::ElementValues& values) { return values.has("name") ? values.text("name") : ""; }
 
-void checkInstance(const dsl::Stack& stack, const control::Registry& registry, const ElementRow& row,
-                   const std::string& name, Report& report) {
-  const Subject subject{stack, registry, row.name, name};
-  if (row.kind == ElementKind::task) checkTask(subject, report);
-  if (row.kind == ElementKind::signal) checkSignal(subject, report);
-  if (row.kind == ElementKind::back_end) checkBackEnd(subject, report);
+void checkInstance(const dsl::Stack& stack, const control::Registry& registry, const control::ElementValues& values,
+                   Report& report) {
+  const Subject subject{stack, registry, values.row().name, nameOf(values)};
+  switch (values.row().kind) {
+    case ElementKind::shape: return checkShape(subject, values, report);
+    case ElementKind::sensor: return checkSensor(subject, report);
+    case ElementKind::signal: return checkSignal(subject, report);
+    case ElementKind::task: return checkTask(subject, report);
+    case ElementKind::controller: return checkController(subject, report);
+    case ElementKind::recorder: return checkRecorder(subject, report);
+    case ElementKind::back_end: return checkBackEnd(subject, report);
+    case ElementKind::structure: return;
+  }
 }
 
 /// The diagnostics of a stack that does not compile, as one sentence.
@@ -63,7 +77,11 @@ void checkMaking(dsl::Stack stack, const control::Registry& registry, const Elem
   }
   judge({stack, registry, row.name, ""}, "instance", report, [&] {
     try {
-      dsl::compile(stack, registry);
+      for (const control::ElementValues* values : instancesIn(stack, row))
+        if (row.kind == ElementKind::shape) registry.makeShape(*values);
+      const auto controller = dsl::compile(stack, registry);
+      const runtime::TemporaryFolder folder;
+      if (row.kind == ElementKind::recorder) dsl::makeRecorders(stack, registry, *controller, folder.path);
     } catch (const dsl::InvalidStack& invalid) {
       throw Broken{sentenceOf(invalid)};
     }
@@ -87,7 +105,7 @@ void checkReads(const ElementRow& row, const std::set<std::string, std::less<>>&
 
 void checkElement(const control::Registry& registry, const ElementRow& row, const dsl::Stack* given, Report& report) {
   checkSchema(row, report);
-  if (row.kind != ElementKind::task && row.kind != ElementKind::signal && row.kind != ElementKind::back_end) return;
+  if (row.kind == ElementKind::structure) return;
 
   std::optional<dsl::Stack> stack;
   if (given) stack = *given;
@@ -106,7 +124,7 @@ void checkElement(const control::Registry& registry, const ElementRow& row, cons
   if (report.findings.back().outcome == Outcome::broken) return;
   checkReads(row, reads, from_defaults, report);
   for (const control::ElementValues* values : instancesIn(*stack, row))
-    checkInstance(*stack, registry, row, nameOf(*values), report);
+    checkInstance(*stack, registry, *values, report);
 }
 
 }  // namespace

@@ -33,6 +33,25 @@
 ///   allocation   an update takes no memory.
 ///   determinism  two instances give the same bytes for the same inputs, also after a third one was given others.
 ///
+/// of each shape, at random points in and around it, within its stated error
+///   distance     finite; changes by no more than the way between two points; nothing lies beyond the bounding radius.
+///   gradient     a unit vector; with the distance it leads to the surface.
+///   convexity    of one that says that it is convex: so is its distance.
+///   support      on the surface, and nothing lies farther.
+///   allocation, determinism   of the distance.
+///
+/// of each sensor
+///   felt         joints keep their number, contacts are at links of the robot, readings are finite or NaN.
+///   allocation, determinism   of one tick; two instances of one seed feel the same.
+///
+/// of each controller
+///   tasks        it owns one; each keeps the laws of tasks, under its full name.
+///   allocation, determinism   of its update; of its columns and the forces of its tasks.
+///
+/// of each recorder
+///   files        it writes what it writes into the run folder, and throws nothing.
+///   determinism  a second run of the same inputs leaves the same files, however long its ticks took.
+///
 /// of each signal
 ///   ports        every declared port is served, at one address for the signal's life; scalars are finite.
 ///   allocation, determinism   as for tasks, over scalar ports and log columns.

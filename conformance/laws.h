@@ -18,8 +18,13 @@ struct Subject {
 };
 
 void checkSchema(const control::ElementRow& row, Report& report);
-void checkTask(const Subject& subject, Report& report);
+void checkShape(const Subject& subject, const control::ElementValues& values, Report& report);
+void checkSensor(const Subject& subject, Report& report);
 void checkSignal(const Subject& subject, Report& report);
+void checkTask(const Subject& subject, Report& report);
+/// With the laws of tasks for each that it owns.
+void checkController(const Subject& subject, Report& report);
+void checkRecorder(const Subject& subject, Report& report);
 /// The stack's back end.
 void checkBackEnd(const Subject& subject, Report& report);
 

@@ -54,10 +54,14 @@ class Maker {
 
   dsl::Stack make(const ElementRow& row) {
     if (row.kind == ElementKind::signal) addSignal(row);
+    if (row.kind == ElementKind::sensor) stack_.sensors.push_back(instanceOf(row, "specimen"));
+    if (row.kind == ElementKind::recorder) stack_.run.recorders.push_back(instanceOf(row, "specimen"));
+    if (row.kind == ElementKind::shape) addObject(row);
     dsl::LevelDescription level;
     level.element.values = control::makeValues(*registry_.elements().find("level"), {{"priority", "1"}});
     if (row.kind == ElementKind::task) level.tasks.push_back(instanceOf(row, "specimen"));
-    if (row.kind == ElementKind::back_end) {
+    if (row.kind == ElementKind::controller) level.controller = instanceOf(row, "specimen");
+    if (level.tasks.empty() && !level.controller) {
       level.tasks.push_back(named("impedance", {{"frame", "palm"}, {"position", "0.6 0.1 0.3"}}));
       level.tasks.push_back(named("posture", {{"joints", "arm hand"}, {"q", "0.1"}}));
     }
@@ -84,7 +88,8 @@ class Maker {
 
   dsl::ElementInstance instanceOf(const ElementRow& row, const std::string& name) {
     if (needsChildren(row)) throw NoGuess{"<" + row.name + "> needs elements inside, and nothing tells which"};
-    std::map<std::string, std::string> given{{"name", name}};
+    std::map<std::string, std::string> given;
+    if (row.attribute("name")) given["name"] = name;
     for (const AttributeRow& attribute : row.attributes) {
       if (attribute.name == "name") continue;
       if (attribute.type == ValueType::port) {
@@ -95,6 +100,14 @@ class Maker {
       }
     }
     return {control::makeValues(row, given), name, {}, "<" + row.name + ">"};
+  }
+
+  void addObject(const ElementRow& row) {
+    dsl::ObjectDescription object;
+    object.object.name = "specimen";
+    object.shapes.push_back(instanceOf(row, "").values);
+    object.object.primitives.push_back({registry_.makeShape(object.shapes.back()), Eigen::Isometry3d::Identity()});
+    stack_.objects.push_back(std::move(object));
   }
 
   std::string guess(const ElementRow& row, const AttributeRow& attribute) {

@@ -54,8 +54,10 @@ dsl::Stack movedStack(const dsl::Stack& stack, const Eigen::Isometry3d& X) {
   for (description::Joint& joint : moved.robot.joints)
     if (joint.parent == moved.robot.root) joint.origin = X * joint.origin;
   for (dsl::ElementInstance& signal : moved.signals) move(signal.values, X);
-  for (dsl::LevelDescription& level : moved.levels)
+  for (dsl::LevelDescription& level : moved.levels) {
     for (dsl::ElementInstance& task : level.tasks) move(task.values, X);
+    if (level.controller) move(level.controller->values, X);
+  }
   return moved;
 }
 
@@ -104,6 +106,7 @@ void States::touch(Bench& bench) const {
 void States::next(Bench& bench) {
   if (ticks_++ % kStretch == 0) jump(bench);
   else q_ += bench.period() * qd_;
+  for (double& reading : bench.sensed.readings) reading = uniform(0, 1);
   bench.sensed.q = q_;
   bench.sensed.qd = qd_;
   touch(bench);

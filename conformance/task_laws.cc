@@ -38,7 +38,7 @@ class TaskBench {
     change(bench_.sensed);
     states_.touch(bench_);
     const control::Tick tick = bench_.sense();
-    for (const control::NamedSignal& signal : bench_.signals()) signal.signal->update(tick);
+    bench_.prepare(tick);
     allocations_ = allocationCount();
     on_bench_.task->update(tick, on_bench_.rows);
     allocations_ = allocationCount() - allocations_;

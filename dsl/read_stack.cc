@@ -230,7 +230,8 @@ class StackReader {
 
   /// A level has tasks or one controller that owns it.
   void checkOwner(const CheckedElement& element, const LevelDescription& level) {
-    if (level.tasks.empty() && !level.controller && element.children.size() == element.xml->children.size())
+    const bool whole = !element.xml->incomplete && element.children.size() == element.xml->children.size();
+    if (level.tasks.empty() && !level.controller && whole)
       findings_.error(code::missing_element, *element.xml, "<level> needs a task, or a controller that owns it");
     if (level.tasks.empty() || !level.controller) return;
     for (const CheckedElement& child : element.children)

@@ -8,7 +8,7 @@
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/progress.h"
 #include "apps/tactus/run_folder.h"
-#include "apps/tactus/temporary_folder.h"
+#include "framework/runtime/temporary_folder.h"
 #include "apps/tactus/text.h"
 #include "apps/tactus/xray_view.h"
 #include "framework/runtime/file_error.h"
@@ -74,7 +74,7 @@ int explainTick(const ExplainTickArguments& arguments, bool json) {
 
   const Interrupt interrupt;
   Session session(std::move(stack), program.registry());
-  const TemporaryFolder again;
+  const runtime::TemporaryFolder again;
   const auto recorder = session.recordInto(again.path);
   runtime::LoopResult result;
   {

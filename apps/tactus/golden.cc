@@ -10,7 +10,7 @@
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/stack_arguments.h"
-#include "apps/tactus/temporary_folder.h"
+#include "framework/runtime/temporary_folder.h"
 #include "apps/tactus/text.h"
 #include "apps/tactus/tolerances.h"
 #include "apps/tactus/versions.h"
@@ -157,14 +157,14 @@ int record(const GoldenArguments& arguments) {
 
   // The case is made beside its place and put there whole: whatever fails before leaves the old one as it was.
   fs::create_directories(folder.parent_path());
-  const TemporaryFolder fresh(folder.parent_path() / ("." + folder.filename().string() + "-"));
+  const runtime::TemporaryFolder fresh(folder.parent_path() / ("." + folder.filename().string() + "-"));
   const fs::path made = fresh.path;
   keepOtherFiles(folder, made);
   // The case keeps the stack with everything resolved, so that it stands alone.
   const std::string stack_file = (made / "stack.xml").string();
   runtime::writeFile(stack_file, portableStack(stack, folder));
   Session session(readAloud(program, {stack_file, {}, {}, {}, {}}), program.registry());
-  const TemporaryFolder run;
+  const runtime::TemporaryFolder run;
   const std::string log = runInto(run.path, session, interrupt);
   refuseUnusable(session);
   runtime::writeFile((made / "expected.csv").string(), runtime::readFile(log));
@@ -183,7 +183,7 @@ int verifyCase(Program& program, const std::string& name, const std::string& kee
   const auto expected = runtime::CsvTable::read((folder / "expected.csv").string());
   const auto tolerances = readTolerances((folder / "tolerances.xml").string());
   Session session(readAloud(program, {(folder / "stack.xml").string(), {}, {}, {}, {}}), program.registry());
-  const TemporaryFolder temporary;
+  const runtime::TemporaryFolder temporary;
   const Interrupt interrupt;
   const std::string log = runInto(temporary.path, session, interrupt);
   if (!keep.empty()) {

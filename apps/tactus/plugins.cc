@@ -57,7 +57,7 @@ struct Chosen {
   Chosen(const std::string& asked, std::vector<std::string> paths) : program(withFile(asked, std::move(paths))) {
     if (asked == built_in) {
       for (const control::ElementRow& row : program.registry().elements().rows()) {
-        const bool made = row.kind == control::ElementKind::task || row.kind == control::ElementKind::signal;
+        const bool made = row.kind != control::ElementKind::structure;
         if (made && !ofPlugin(row.name)) elements.push_back(row.name);
       }
       return;

@@ -146,6 +146,7 @@ class Controller {
   const std::vector<NamedSignal>& signals() const { return signals_; }
   const std::vector<Level>& levels() const { return levels_; }
   const Readings& readings() const { return *readings_; }
+  Readings& readings() { return *readings_; }
   const Activation& activationOf(std::string_view task) const;
   /// In the order in which it happened.
   const std::vector<SwitchedOff>& switchedOff() const { return switched_off_; }

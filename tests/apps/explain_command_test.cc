@@ -24,7 +24,7 @@ TEST(ExplainCommand, TellsEverythingOfAnAttribute) {
 
 TEST(ExplainCommand, TellsPortsChildrenAndChoices) {
   EXPECT_THAT(tactus({"explain", "contacts"}).out, HasSubstr("  held: contact-set\n      Contacts on desired links"));
-  EXPECT_THAT(tactus({"explain", "level"}).out, HasSubstr("children\n  any task (at least 1)\n"));
+  EXPECT_THAT(tactus({"explain", "level"}).out, HasSubstr("children\n  any task\n  any controller (at most 1)\n"));
   EXPECT_THAT(tactus({"explain", "record"}).out, HasSubstr("columns: choice; one of default | all; default default"));
   EXPECT_THAT(tactus({"explain", "controller"}).out, HasSubstr("and the options of the back end that `backend` names"));
   EXPECT_THAT(tactus({"explain", "null-space"}).out,

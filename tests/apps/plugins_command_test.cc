@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "framework/runtime/version.h"
+#include "framework/runtime/plugin_api.h"
 #include "tests/apps/program.h"
 
 namespace tactus::testing {
@@ -68,7 +69,7 @@ TEST(PluginsCommand, ElementsWithoutTheirPluginsNameAreRefused) {
 TEST(PluginsCommand, WrongPluginIsExitFour) {
   const Outcome outcome = tactus({"plugins", "list", "--plugin", library("abi")});
   EXPECT_EQ(outcome.exit_code, 4);
-  EXPECT_THAT(outcome.err, HasSubstr("built with plugin ABI 99, but this program has 2"));
+  EXPECT_THAT(outcome.err, HasSubstr("built with plugin ABI 99, but this program has " + std::to_string(runtime::plugin_abi)));
 }
 
 TEST(PluginsCommand, MissingPluginIsExitFour) {
@@ -92,7 +93,7 @@ TEST(PluginsInfo, TellsTheHandshakeAndTheElements) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json info = outcome.json();
   EXPECT_EQ(info["name"], "lawless");
-  EXPECT_EQ(info["abi"], 2);
+  EXPECT_EQ(info["abi"], runtime::plugin_abi);
   EXPECT_EQ(info["eigen_max_align"], 16);
   EXPECT_EQ(info["elements"][0]["name"], "lawless.good");
   const nlohmann::json* target = find(info["elements"][0]["attributes"], "target");

@@ -81,7 +81,13 @@ TEST(ElementTable, RefusesRowsThatContradictThemselves) {
             "<x>: attribute 'a' has an empty range");
   ElementRow with_port = row("x");
   with_port.ports = {{"p", "scalar", "", ""}};
-  EXPECT_EQ(refusal(with_port), "<x>: only signals have ports");
+  EXPECT_EQ(refusal(with_port), "<x>: only signals and sensors have ports");
+  ElementRow sensor = row("x", {{.name = "a", .type = ValueType::port, .port_type = "scalar"}});
+  sensor.kind = ElementKind::sensor;
+  EXPECT_EQ(refusal(sensor), "<x>: attribute 'a': a sensor stands before all signals and reads no ports");
+  sensor.attributes.clear();
+  sensor.ports = {{"p", "contact-set", "", ""}};
+  EXPECT_EQ(refusal(sensor), "<x>: port 'p' of a sensor is a scalar or a vector");
   ElementRow with_child = row("x");
   with_child.children = {{"y", 2, 1}};
   EXPECT_EQ(refusal(with_child), "<x>: child 'y' has an empty range");

@@ -293,7 +293,7 @@ TEST(ReadStack, WordsOfATaskStandAlone) {
 
 TEST(ReadStack, CountsAndClasses) {
   EXPECT_THAT(errors(smallStack(level + "<run/><run/>")), ElementsAre("3:56 E017 <stack> takes at most 1 <run>"));
-  EXPECT_THAT(errors(smallStack("<level priority=\"1\"/>")), ElementsAre("3:1 E016 <level> needs a task"));
+  EXPECT_THAT(errors(smallStack("<level priority=\"1\"/>")), ElementsAre("3:1 E016 <level> needs a task, or a controller that owns it"));
   EXPECT_THAT(errors(smallStack("<defaults class=\"c\"><test.pull name=\"x\"/></defaults>" + level)),
               ElementsAre("3:32 E012 an element in <defaults> has no attribute 'name'"));
   EXPECT_THAT(errors(smallStack("<defaults class=\"c\" base=\"d\"/>" + level)),

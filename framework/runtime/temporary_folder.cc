@@ -1,4 +1,4 @@
-#include "apps/tactus/temporary_folder.h"
+#include "framework/runtime/temporary_folder.h"
 
 #include <stdlib.h>
 
@@ -6,13 +6,13 @@
 
 #include "framework/runtime/file_error.h"
 
-namespace tactus::app {
+namespace tactus::runtime {
 namespace {
 
 std::filesystem::path temporaryPlace() {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
-  if (error) throw runtime::FileError("TMPDIR", "is no folder for temporary files: " + error.message());
+  if (error) throw FileError("TMPDIR", "is no folder for temporary files: " + error.message());
   return folder;
 }
 
@@ -21,7 +21,7 @@ std::filesystem::path temporaryPlace() {
 TemporaryFolder::TemporaryFolder() : TemporaryFolder(temporaryPlace() / "tactus-") {}
 
 TemporaryFolder::TemporaryFolder(const std::filesystem::path& stem) : path(stem.string() + "XXXXXX") {
-  if (!::mkdtemp(path.data())) throw runtime::FileError(path, "cannot be created", errno);
+  if (!::mkdtemp(path.data())) throw FileError(path, "cannot be created", errno);
 }
 
 TemporaryFolder::~TemporaryFolder() {
@@ -29,4 +29,4 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path, ignored);
 }
 
-}  // namespace tactus::app
+}  // namespace tactus::runtime

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace tactus::app {
+namespace tactus::runtime {
 
 /// A new folder whose name begins with `stem` and a few letters more, taken away at the end.
 class TemporaryFolder {
@@ -17,4 +17,4 @@ class TemporaryFolder {
   std::string path;
 };
 
-}  // namespace tactus::app
+}  // namespace tactus::runtime

@@ -1,0 +1,110 @@
+#include <cmath>
+
+#include "conformance/allocation_count.h"
+#include "conformance/laws.h"
+#include "conformance/states.h"
+#include "dsl/compile.h"
+#include "framework/control/sensing_guard.h"
+
+namespace tactus::conformance {
+namespace {
+
+constexpr int kTicks = 16 * kStretch;
+constexpr std::uint64_t kSeed = 1;
+
+/// The sensor alone, told what there is at random states.
+class SensorBench {
+ public:
+  SensorBench(const Subject& subject, unsigned states)
+      : bench_(subject.stack, subject.registry), states_(subject.stack, states) {
+    auto sensors = dsl::makeSensors(subject.stack, subject.registry, subject.stack.scene(kSeed), kSeed);
+    for (runtime::NamedSensor& named : sensors)
+      if (named.name == subject.name) sensor_ = std::move(named);
+    int count = 0;
+    for (const control::ReadingRow& row : sensor_.rows) count += row.count;
+    felt_.contacts.reserve(control::SensingGuard::contact_capacity);
+    felt_.readings.setZero(count);
+  }
+
+  void tick() {
+    states_.next(bench_);
+    const control::Sensed& truth = bench_.sensed;
+    felt_.time = truth.time;
+    felt_.q = truth.q;
+    felt_.qd = truth.qd;
+    felt_.contacts.assign(truth.contacts.begin(), truth.contacts.end());
+    const long before = allocationCount();
+    sensor_.sensor->sense(truth, felt_, felt_.readings);
+    allocations_ = allocationCount() - before;
+    bench_.endTick();
+  }
+  const control::Sensed& felt() const { return felt_; }
+  int links() const { return static_cast<int>(bench_.robot().model().frames().size()); }
+  int dof() const { return bench_.robot().dof(); }
+  long allocations() const { return allocations_; }
+
+ private:
+  Bench bench_;
+  States states_;
+  runtime::NamedSensor sensor_;
+  control::Sensed felt_;
+  long allocations_ = 0;
+};
+
+void checkFelt(const Subject& subject) {
+  SensorBench bench(subject, 1);
+  for (int k = 0; k < kTicks; ++k) {
+    bench.tick();
+    const control::Sensed& felt = bench.felt();
+    if (felt.q.size() != bench.dof() || felt.qd.size() != bench.dof()) throw Broken{"it changed the number of joints"};
+    for (const double reading : felt.readings)
+      if (std::isinf(reading)) throw Broken{"a reading is infinite; NaN says that there is none"};
+    for (const control::ContactRecord& contact : felt.contacts)
+      if (contact.link < 0 || contact.link >= bench.links())
+        throw Broken{"it feels a contact at link " + std::to_string(contact.link) + ", which the robot does not have"};
+  }
+}
+
+void checkAllocation(const Subject& subject) {
+  SensorBench bench(subject, 3);
+  for (int k = 0; k < kTicks; ++k) {
+    bench.tick();
+    if (bench.allocations() != 0)
+      throw Broken{"tick " + std::to_string(k + 1) + " took memory " + std::to_string(bench.allocations()) + " times"};
+  }
+}
+
+std::vector<double> trace(const Subject& subject, unsigned states) {
+  SensorBench bench(subject, states);
+  std::vector<double> said;
+  const auto add = [&said](const auto& numbers) { said.insert(said.end(), numbers.begin(), numbers.end()); };
+  for (int k = 0; k < kTicks; ++k) {
+    bench.tick();
+    add(bench.felt().q);
+    add(bench.felt().qd);
+    for (const double reading : bench.felt().readings) said.push_back(std::isnan(reading) ? -1e300 : reading);
+    for (const control::ContactRecord& contact : bench.felt().contacts) {
+      said.push_back(contact.link);
+      said.push_back(contact.force_N);
+      add(contact.point_W);
+      add(contact.normal_W);
+    }
+  }
+  return said;
+}
+
+void checkDeterminism(const Subject& subject) {
+  const std::vector<double> first = trace(subject, 2);
+  trace(subject, 5);
+  if (first != trace(subject, 2)) throw Broken{"a second instance of the same seed felt something else"};
+}
+
+}  // namespace
+
+void checkSensor(const Subject& subject, Report& report) {
+  judge(subject, "felt", report, [&] { checkFelt(subject); });
+  judge(subject, "allocation", report, [&] { checkAllocation(subject); });
+  judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
+}
+
+}  // namespace tactus::conformance
