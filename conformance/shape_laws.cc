@@ -131,7 +131,8 @@ void checkShape(const Subject& subject, const control::ElementValues& values, Re
   judge(subject, "distance", report, [&] { checkDistance(*shape); });
   judge(subject, "gradient", report, [&] { checkGradient(*shape); });
   judge(subject, "convexity", report, [&] { checkConvexity(*shape); });
-  judge(subject, "support", report, [&] { checkSupport(*shape); });
+  const bool leads_to_surface = report.findings[report.findings.size() - 2].outcome == Outcome::kept;
+  if (leads_to_surface) judge(subject, "support", report, [&] { checkSupport(*shape); });
   judge(subject, "allocation", report, [&] { checkAllocation(*shape); });
   judge(subject, "determinism", report, [&] { checkDeterminism(*shape, *subject.registry.makeShape(values)); });
 }

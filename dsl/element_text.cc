@@ -88,8 +88,11 @@ std::string attributeText(const AttributeRow& row) {
 const std::vector<KindText>& kindTexts() {
   static const std::vector<KindText> kinds{{ElementKind::structure, "structure", "structure"},
                                            {ElementKind::shape, "shape", "shapes, in <object>"},
+                                           {ElementKind::sensor, "sensor", "sensors, in <sensors>"},
                                            {ElementKind::signal, "signal", "signals, in <signals>"},
                                            {ElementKind::task, "task", "tasks, in <level>"},
+                                           {ElementKind::controller, "controller", "controllers, alone in a <level>"},
+                                           {ElementKind::recorder, "recorder", "recorders, in <run>"},
                                            {ElementKind::back_end, "back-end", "back ends, by <controller backend>"}};
   return kinds;
 }

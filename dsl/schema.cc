@@ -238,8 +238,12 @@ constexpr Page pages[] = {
     {ElementKind::structure, "structure.md", "Structure",
      "What a stack is made of, from the outermost element inwards."},
     {ElementKind::shape, "shapes.md", "Shapes", "What an `<object>` of the scene is the union of."},
+    {ElementKind::sensor, "sensors.md", "Sensors",
+     "What stands between the plant and the controller, in `<sensors>`; read as `name.port`."},
     {ElementKind::signal, "signals.md", "Signals", "Sources of values, in `<signals>`; read as `name.port`."},
     {ElementKind::task, "tasks.md", "Tasks", "What the robot should do, in a `<level>`."},
+    {ElementKind::controller, "controllers.md", "Controllers", "What owns a whole `<level>`."},
+    {ElementKind::recorder, "recorders.md", "Recorders", "What else a run writes into its folder, in `<run>`."},
     {ElementKind::back_end, "back-ends.md", "Back ends",
      "What solves a tick: `<controller backend=\"…\">`, with these options as further attributes."}};
 
@@ -270,6 +274,8 @@ std::map<std::string, std::string> referencePages(const ElementTable& table) {
   std::string index = std::string(made) + "# Reference\n\nEverything that may stand in a stack. `tactus explain NAME` says the "
                       "same on a terminal. [Messages](../messages.md) has every error and warning.\n";
   for (const Page& page : pages) {
+    const auto isOfPage = [&](const ElementRow& row) { return row.kind == page.kind; };
+    if (std::none_of(table.rows().begin(), table.rows().end(), isOfPage)) continue;
     std::string& text = texts[page.file];
     text = std::string(made) + "# " + page.title + "\n\n" + page.introduction + "\n";
     index += "\n## [" + std::string(page.title) + "](" + page.file + ")\n\n" + page.introduction + "\n\n";

@@ -33,6 +33,15 @@ const description::Robot& checkedJoints(const description::Robot& robot) {
   return robot;
 }
 
+/// The scene, when the plant can touch all its shapes.
+const description::Scene& checkedShapes(const description::Scene& scene) {
+  for (const description::Object& object : scene.objects)
+    for (const description::Primitive& primitive : object.primitives)
+      if (!primitive.shape->isConvex())
+        throw runtime::PlantError("object '" + object.name + "' has a shape that is not convex: make it a union of convex ones");
+  return scene;
+}
+
 constexpr const char* usual_causes =
     "Usual causes: damping gains too high for the joint's inertia at this control rate (keep d·dt/I below 0.5), a mass "
     "matrix of the controller that lacks the rotor inertia, delay, or a start inside an object.";
@@ -47,7 +56,7 @@ class SimbodyPlant::Implementation {
         names_(jointNames(robot)),
         robot_(checkedJoints(robot), scene.gravity),
         state_(robot_.defaultState()),
-        contact_(movingFeatures(robot), scene, robot_.matter().getNumBodies(), options.contact),
+        contact_(movingFeatures(robot), checkedShapes(scene), robot_.matter().getNumBodies(), options.contact),
         motions_(robot_.matter().getNumBodies()),
         q_(checkedStart(robot, start_q)),
         qd_(Eigen::VectorXd::Zero(robot_.dof())),

@@ -89,6 +89,42 @@ TEST_F(Lawless, Signals) {
   EXPECT_BREAKS("lawless.clock-schema", "schema", "port 'now' has no description");
 }
 
+TEST_F(Lawless, Shapes) {
+  EXPECT_TRUE(check("lawless.ball-good").conforms()) << check("lawless.ball-good").text();
+  EXPECT_BREAKS("lawless.ball-distance-bound", "distance", "it reaches beyond its bounding radius");
+  EXPECT_BREAKS("lawless.ball-gradient", "gradient", "m from the surface");
+  EXPECT_BREAKS("lawless.ball-convexity", "convexity", "it says that it is convex, but between");
+  EXPECT_BREAKS("lawless.ball-support", "support", "does not lie on its surface");
+  EXPECT_BREAKS("lawless.ball-allocation", "allocation", "its distance took memory");
+  EXPECT_BREAKS("lawless.ball-determinism", "determinism", "a second instance");
+  const Report jumps = check("lawless.ball-distance");
+  EXPECT_THAT(jumps.text(), HasSubstr("broken: distance: between ("));
+}
+
+TEST_F(Lawless, Sensors) {
+  EXPECT_TRUE(check("lawless.scale-good").conforms()) << check("lawless.scale-good").text();
+  EXPECT_BREAKS("lawless.scale-felt", "felt", "a reading is infinite");
+  EXPECT_BREAKS("lawless.scale-allocation", "allocation", "tick 1 took memory 1 times");
+  EXPECT_BREAKS("lawless.scale-determinism", "determinism", "felt something else");
+  EXPECT_THAT(check("lawless.scale-felt-joints").text(), HasSubstr("broken: felt: it changed the number of joints"));
+}
+
+TEST_F(Lawless, Controllers) {
+  EXPECT_TRUE(check("lawless.owner-good").conforms()) << check("lawless.owner-good").text();
+  EXPECT_BREAKS("lawless.owner-tasks", "tasks", "it owns no task");
+  EXPECT_BREAKS("lawless.owner-allocation", "allocation", "update 1 took memory");
+  EXPECT_BREAKS("lawless.owner-determinism", "determinism", "a second instance");
+  EXPECT_BREAKS("lawless.owner-jacobian", "jacobian", "differences of its displacement say");
+  EXPECT_BREAKS("lawless.owner-frame", "frame", "the moved robot's joint torques differ");
+}
+
+TEST_F(Lawless, Recorders) {
+  EXPECT_TRUE(check("lawless.tally-good").conforms()) << check("lawless.tally-good").text();
+  EXPECT_BREAKS("lawless.tally-files", "files", "it left no file in the run folder");
+  EXPECT_BREAKS("lawless.tally-files-throws", "files", "recorder 'specimen' failed at t = 0 s: no pencil");
+  EXPECT_BREAKS("lawless.tally-determinism", "determinism", "no wall-clock time goes into results");
+}
+
 TEST_F(Lawless, BackEnds) {
   EXPECT_BREAKS("lawless.sum-torque", "torque", "its torque is beyond them");
   EXPECT_BREAKS("lawless.sum-torque-nan", "torque", "it solved none of 80 ticks");

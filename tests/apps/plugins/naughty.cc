@@ -3,6 +3,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/runtime/file_error.h"
 #include "framework/runtime/plugin_api.h"
 
 namespace {
@@ -66,7 +67,50 @@ class Moody final : public BackEnd {
   int from_, until_, ticks_ = 0;
 };
 
+/// Goes wrong at 0.02 s, as all parts below.
+void failAt(double time, const std::string& what) {
+  if (time >= 0.0195) throw std::runtime_error(what);
+}
+
+class Numb final : public Sensor {
+  void doSense(const Sensed& truth, Sensed&, Eigen::Ref<Eigen::VectorXd> readings) override {
+    readings.setZero();
+    failAt(truth.time, "the nerve is cut");
+  }
+};
+
+class Pencil final : public Observer {
+ public:
+  explicit Pencil(const RecorderContext& context) {
+    if (context.values.text("fault") == "disk") throw tactus::runtime::FileError(context.folder + "/notes", "no space left");
+  }
+  void observe(const ObservedTick& tick) override { failAt(tick.truth.time, "the pencil broke"); }
+};
+
+class Owner final : public LevelController {
+  void doUpdate(const Tick& tick) override { failAt(tick.time, "lost the thread"); }
+};
+
+void registerParts(Registry& registry) {
+  const auto rowOf = [](const std::string& name) {
+    ElementRow row;
+    row.name = "naughty." + name;
+    row.description = "Goes wrong.";
+    return row;
+  };
+  registry.addSensor(rowOf("sensor"), [](const SensorContext&) { return std::make_unique<Numb>(); });
+  ElementRow recorder = rowOf("recorder");
+  recorder.attributes = {{.name = "fault", .type = ValueType::choice, .default_text = "throw", .choices = {"throw", "disk"}}};
+  registry.addRecorder(recorder, [](const RecorderContext& context) { return std::make_unique<Pencil>(context); });
+  registry.addController(rowOf("owner"), [](const BuildContext& context) {
+    ControlledLevel level{std::make_unique<Owner>(), {}};
+    level.tasks.push_back({"rest", context.task("posture", {{"joints", "tip"}})});
+    return level;
+  });
+}
+
 void registerElements(Registry& registry) {
+  registerParts(registry);
   ElementRow row;
   row.name = "naughty.task";
   row.description = "Goes wrong.";

@@ -1,8 +1,10 @@
 // Elements that break one law each, named after it, and `lawless.good…`, which break none.
 
 #include <cmath>
+#include <limits>
 
 #include "framework/control/displacement.h"
+#include "framework/runtime/file_error.h"
 #include "framework/runtime/plugin_api.h"
 
 namespace {
@@ -97,6 +99,122 @@ class Sum final : public BackEnd {
   std::string fault_;
 };
 
+/// A ball, right in all but what its fault says.
+class Ball final : public geometry::Shape {
+ public:
+  explicit Ball(std::string fault) : Shape(fault == "distance-bound" ? 0.05 : 0.1, true), fault_(std::move(fault)) {}
+
+ private:
+  geometry::SignedDistance doDistance(const Eigen::Vector3d& p) const override {
+    static long asked = 0;
+    const double length = p.norm();
+    geometry::SignedDistance nearest{length - 0.1, p / length};
+    if (fault_ == "distance") nearest = {p.x() > 0 ? length - 0.1 : length - 0.07, p / length};
+    if (fault_ == "gradient") nearest.gradient *= -1;
+    if (fault_ == "convexity") nearest = hollow(p);
+    if (fault_ == "allocation") nearest.distance += 0 * Eigen::VectorXd::Ones(30).eval().sum();
+    if (fault_ == "determinism") nearest.distance *= 1 + 1e-14 * static_cast<double>(++asked);
+    return nearest;
+  }
+  std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override {
+    return (fault_ == "support" ? 0.09 : 0.1) * n;
+  }
+  /// The space between two balls about the origin.
+  static geometry::SignedDistance hollow(const Eigen::Vector3d& p) {
+    const double length = p.norm();
+    if (length > 0.06) return {length - 0.1, p / length};
+    return {0.02 - length, -p / length};
+  }
+  std::string fault_;
+};
+
+/// Reads the sum of all forces, right in all but what its fault says.
+class Scale final : public Sensor {
+ public:
+  explicit Scale(std::string fault) : fault_(std::move(fault)) {}
+
+ private:
+  void doSense(const Sensed&, Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) override {
+    static long ticks_of_all = 0;
+    readings[0] = 0;
+    for (const ContactRecord& contact : felt.contacts) readings[0] += contact.force_N;
+    if (fault_ == "felt") readings[0] = std::numeric_limits<double>::infinity();
+    if (fault_ == "felt-joints") felt.q.conservativeResize(1);
+    if (fault_ == "allocation") copy_ = std::make_unique<double>(readings[0]);
+    if (fault_ == "determinism") readings[0] += static_cast<double>(++ticks_of_all);
+  }
+  std::string fault_;
+  std::unique_ptr<double> copy_;
+};
+
+class Owner final : public LevelController {
+ public:
+  explicit Owner(std::string fault) : fault_(std::move(fault)) {}
+  void columns(std::vector<LogColumn>& columns) const override { columns.push_back({"time", &time_}); }
+
+ private:
+  void doUpdate(const Tick& tick) override {
+    static long ticks_of_all = 0;
+    time_ = tick.time + (fault_ == "determinism" ? static_cast<double>(++ticks_of_all) : 0);
+    if (fault_ == "allocation") copy_ = std::make_unique<double>(time_);
+  }
+  std::string fault_;
+  double time_ = 0;
+  std::unique_ptr<double> copy_;
+};
+
+/// Writes how many ticks there were.
+class Tally final : public Observer {
+ public:
+  Tally(const RecorderContext& context, std::string fault) : folder_(context.folder), fault_(std::move(fault)) {}
+  void observe(const ObservedTick& tick) override {
+    if (fault_ == "files-throws") throw std::runtime_error("no pencil");
+    sum_ += fault_ == "determinism" ? tick.tick_us : 1;
+  }
+  void close() override {
+    if (fault_ != "files") runtime::writeFile(folder_ + "/tally.txt", std::to_string(sum_));
+  }
+
+ private:
+  std::string folder_, fault_;
+  double sum_ = 0;
+};
+
+void registerParts(Registry& registry) {
+  const auto rowOf = [](const std::string& name) {
+    ElementRow row;
+    row.name = "lawless." + name;
+    row.description = "A part.";
+    return row;
+  };
+  for (const std::string fault : {"good", "distance", "distance-bound", "gradient", "convexity", "support", "allocation",
+                                  "determinism"})
+    registry.addShape(rowOf("ball-" + fault), [fault](const ElementValues&) { return std::make_shared<Ball>(fault); });
+  for (const std::string fault : {"good", "felt", "felt-joints", "allocation", "determinism"}) {
+    ElementRow row = rowOf("scale-" + fault);
+    row.ports = {{"force", "scalar", "N", "The sum.", 1}};
+    registry.addSensor(row, [fault](const SensorContext&) { return std::make_unique<Scale>(fault); });
+  }
+  for (const std::string fault : {"good", "tasks", "allocation", "determinism", "jacobian", "frame"}) {
+    ElementRow row = rowOf("owner-" + fault);
+    row.attributes = {{.name = "target", .type = ValueType::reals, .unit = "m", .default_text = "0.6 0.1 0.3",
+                       .description = "World axes.", .count = 3, .in_world = InWorld::positions}};
+    registry.addController(row, [fault](const BuildContext& context) {
+      ControlledLevel level{std::make_unique<Owner>(fault), {}};
+      const std::string spring = fault == "jacobian" ? "lawless.jacobian" : "lawless.good";
+      const std::string target = context.values.text("target");
+      if (fault != "tasks")
+        level.tasks.push_back(
+            {"spring", context.task(spring, {{"frame", "palm"}, {"target", fault == "frame" ? "0 0 0.5" : target}})});
+      return level;
+    });
+  }
+  for (const std::string fault : {"good", "files", "files-throws", "determinism"})
+    registry.addRecorder(rowOf("tally-" + fault), [fault](const RecorderContext& context) {
+      return std::make_unique<Tally>(context, fault);
+    });
+}
+
 void registerElements(Registry& registry) {
   for (const std::string fault : {"good", "good-untold", "jacobian", "jacobian-untold", "bias", "frame", "allocation",
                                   "determinism", "rows", "rows-nan", "instance", "attributes", "schema",
@@ -127,6 +245,7 @@ void registerElements(Registry& registry) {
     row.description = "Adds all torques.";
     registry.addBackEnd(row, [fault](const ElementValues&) { return std::make_unique<Sum>(fault); });
   }
+  registerParts(registry);
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+// What stands between the plant and the controller: each sensor in its order, on a copy of what there is.
+
+#include "framework/runtime/sensing_plant.h"
+
+#include <gtest/gtest.h>
+
+#include "framework/runtime/part_error.h"
+#include "tests/runtime/pendulum.h"
+
+namespace tactus::runtime {
+namespace {
+
+/// Adds to the angle, and reads the angle that it was told.
+class Shift final : public control::Sensor {
+ public:
+  explicit Shift(double by) : by_(by) {}
+
+ private:
+  void doSense(const control::Sensed& truth, control::Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) override {
+    if (truth.time > 0.002) throw std::runtime_error("the cable broke");
+    readings[0] = felt.q[0];
+    felt.q[0] += by_;
+  }
+  double by_;
+};
+
+std::unique_ptr<SensingPlant> shifted() {
+  std::vector<NamedSensor> sensors;
+  sensors.push_back({"first", std::make_unique<Shift>(1), {{"first", "angle", 1, true}}});
+  sensors.push_back({"second", std::make_unique<Shift>(10), {{"second", "angle", 1, true}}});
+  return std::make_unique<SensingPlant>(std::make_unique<tactus::testing::PendulumPlant>(), std::move(sensors));
+}
+
+TEST(SensingPlant, GoesThroughItsSensorsInOrder) {
+  const auto plant = shifted();
+  EXPECT_EQ(plant->sense().q[0], 11);
+  EXPECT_EQ(plant->sense().readings, Eigen::Vector2d(0, 1));
+  EXPECT_EQ(plant->truth().q[0], 0);
+}
+
+TEST(SensingPlant, FeelsAnewAfterEveryStep) {
+  const auto plant = shifted();
+  plant->advance(Eigen::VectorXd::Constant(1, 5), 0.001);
+  EXPECT_GT(plant->truth().q[0], 0);
+  EXPECT_DOUBLE_EQ(plant->sense().q[0], plant->truth().q[0] + 11);
+  EXPECT_EQ(plant->sense().time, plant->truth().time);
+}
+
+TEST(SensingPlant, WithoutSensorsIsThePlant) {
+  const SensingPlant plant(std::make_unique<tactus::testing::PendulumPlant>(), {});
+  EXPECT_EQ(&plant.sense(), &plant.truth());
+}
+
+TEST(SensingPlant, NamesTheSensorThatThrows) {
+  const auto plant = shifted();
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
+  plant->advance(none, 0.002);
+  try {
+    plant->advance(none, 0.001);
+    FAIL();
+  } catch (const PartError& error) {
+    EXPECT_STREQ(error.what(), "sensor 'first' failed at t = 0.003 s: the cable broke");
+  }
+}
+
+}  // namespace
+}  // namespace tactus::runtime
