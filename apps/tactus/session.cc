@@ -114,6 +114,20 @@ std::vector<control::Metric> Session::metrics() const {
   return metrics;
 }
 
+std::vector<std::string> Session::metricNames() const {
+  std::vector<std::string> names;
+  for (const control::Metric& metric : metrics()) names.push_back(metric.name);
+  for (const SoughtFeature& feature : features_) {
+    if (!feature.truth_W) continue;
+    control::FeatureEstimate found = *feature.estimate;
+    found.found = true;
+    for (const control::Metric& metric : runtime::featureMetrics(feature.name, found, feature.truth_W)) {
+      if (std::find(names.begin(), names.end(), metric.name) == names.end()) names.push_back(metric.name);
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> Session::warnings() const {
   std::vector<std::string> warnings = statistics_.warnings();
   for (const control::SwitchedOff& fault : controller_->switchedOff())
@@ -131,7 +145,8 @@ std::vector<std::string> Session::warnings() const {
 int Session::faultCode() const {
   const auto& off = controller_->switchedOff();
   if (std::any_of(off.begin(), off.end(), [](const control::SwitchedOff& fault) { return fault.threw; })) return exit_plugin;
-  return off.empty() && statistics_.unusableTasks().empty() ? exit_done : exit_numerical;
+  const bool none_solved = statistics_.ticks() > 0 && statistics_.fallbacks == statistics_.ticks();
+  return off.empty() && statistics_.unusableTasks().empty() && !none_solved ? exit_done : exit_numerical;
 }
 
 std::string Session::backEndName() const { return stack_.back_end.row().name; }

@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"include_cycle.xml", "E039", 3, 18, "'include_cycle.xml' includes itself, directly or through others"},
         Expected{"level_order.xml", "E021", 13, 20,
                  "priority 1 is that of the level before: the levels of a stack rise strictly"},
-        Expected{"mismatched_tag.xml", "E003", 12, 3, "</levl> stands where </level> was expected"},
+        Expected{"mismatched_tag.xml", "E003", 12, 3, "</levl> stands where </level> was expected: <level> was opened in line 10, column 3"},
         Expected{"misplaced_element.xml", "E015", 6, 5, "<posture> must not stand in <scene>: it belongs in <level>"},
         Expected{"missing_attribute.xml", "E013", 11, 5, "<contact-force> needs the attribute 'on'"},
         Expected{"missing_include.xml", "E001", 3, 18,
