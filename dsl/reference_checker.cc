@@ -150,7 +150,8 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
                of_type.size() == 1 ? signal + "." + of_type.front() : "");
   if (!row.unit.empty() && !known->unit.empty() && known->unit != row.unit)
     return say(code::wrong_port_unit, element, row,
-               "'" + text + "' is " + (known->unit == "1" ? "" : "in ") + unitText(known->unit) + ", but '" + row.name + "' takes " + unitText(row.unit));
+               "'" + text + "' is " + (known->unit == "1" ? "" : "in ") + unitText(known->unit) +
+                   ", but '" + row.name + "' takes " + unitText(row.unit));
   if (row.count > 0 && known->dimension > 0 && known->dimension != row.count)
     say(code::wrong_port_unit, element, row,
         "'" + text + "' has " + std::to_string(known->dimension) + " numbers, but '" + row.name + "' takes " +

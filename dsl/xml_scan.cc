@@ -160,7 +160,9 @@ class Scanner {
       skipBlanks();
       if (at_ >= text_.size()) return fail(element.at, "the tag <" + element.name + "> is not ended by '>'");
       if (text_[at_] == '>' || startsWith("/>")) break;
-      if (at_ == before) return fail(at_, "a blank was expected before the next attribute of <" + element.name + ">" + lastValue(element));
+      if (at_ == before)
+        return fail(at_, "a blank was expected before the next attribute of <" + element.name + ">" +
+                             lastValue(element));
       scanAttribute(element);
     }
     if (failed()) return;

@@ -184,7 +184,8 @@ commands: `man tactus-run`.
 Examples:
   tactus man run | man -l -
   tactus man --out ~/.local/share/man/man1)");
-  command->callback([=, &program, &context] { context.action = [=, &program] { return man(program, *words, *folder); }; });
+  command->callback(
+      [=, &program, &context] { context.action = [=, &program] { return man(program, *words, *folder); }; });
 }
 
 }  // namespace tactus::app

@@ -71,7 +71,8 @@ std::vector<AttributeRow> activityAttributes() {
            .type = ValueType::port,
            .unit = "1",
            .default_text = "true",
-           .description = "Whether it takes part: true, false, or a signal's port without unit: while that is above 0.5.",
+           .description =
+               "Whether it takes part: true, false, or a signal's port without unit: while that is above 0.5.",
            .choices = {"true", "false"},
            .port_type = "scalar"},
           {.name = "active-from", .type = ValueType::real, .unit = "s", .description = "Takes part from this time on."},

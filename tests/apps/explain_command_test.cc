@@ -75,7 +75,8 @@ TEST(ExplainCommand, UnknownNameTellsTheNearest) {
 }
 
 TEST(ExplainCommand, AttributesAndPortsLeadToTheirElements) {
-  EXPECT_THAT(tactus({"explain", "held"}).err, HasSubstr("no element is called 'held'; 'held' is a port of contacts\n"));
+  EXPECT_THAT(tactus({"explain", "held"}).err,
+              HasSubstr("no element is called 'held'; 'held' is a port of contacts\n"));
   EXPECT_THAT(tactus({"explain", "touch.held"}).err, HasSubstr("'held' is a port of contacts\n"));
   EXPECT_THAT(tactus({"explain", "posture.among"}).err, HasSubstr("'among' is an attribute of posture\n"));
   EXPECT_THAT(tactus({"explain", "amogn"}).err,

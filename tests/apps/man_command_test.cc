@@ -48,7 +48,8 @@ TEST(ManCommand, EveryOptionAndCommandOfTheHelpHasItsLine) {
     EXPECT_FALSE(options.empty()) << help;
     EXPECT_EQ(matches(page, "\\\\fB(--[a-z-]+)"), options) << entry.path();
   }
-  for (const char* name : {"tactus.1", "tactus-run.1", "tactus-golden-record.1", "tactus-plugins-check.1", "tactus-man.1"})
+  for (const char* name : {"tactus.1", "tactus-run.1", "tactus-golden-record.1", "tactus-plugins-check.1",
+                           "tactus-man.1"})
     EXPECT_TRUE(pages.count(name)) << name;
   std::string help = tactus({"--help"}).out;
   help = help.substr(help.find("Subcommands:"), help.find("Examples:") - help.find("Subcommands:"));
@@ -60,9 +61,11 @@ TEST(ManCommand, EveryOptionAndCommandOfTheHelpHasItsLine) {
 TEST(ManCommand, APageHasItsSections) {
   const Outcome run = tactus({"man", "run"});
   EXPECT_EQ(run.exit_code, 0);
-  EXPECT_THAT(run.out, AllOf(HasSubstr(".TH TACTUS-RUN 1 "), HasSubstr("tactus\\-run \\- run a stack on the simulated robot"),
+  EXPECT_THAT(run.out, AllOf(HasSubstr(".TH TACTUS-RUN 1 "),
+                             HasSubstr("tactus\\-run \\- run a stack on the simulated robot"),
                              HasSubstr(".SH SYNOPSIS\n.B tactus run\n[\\fIOPTIONS\\fR] \\fISTACK\\fR\n"),
-                             HasSubstr("\\fB\\-\\-backend\\fR \\fIBACKEND\\fR\n"), HasSubstr(".SH EXAMPLES\n.nf\n  tactus run "),
+                             HasSubstr("\\fB\\-\\-backend\\fR \\fIBACKEND\\fR\n"),
+                             HasSubstr(".SH EXAMPLES\n.nf\n  tactus run "),
                              HasSubstr(".SH \"SEE ALSO\"\n\\fBtactus\\fR(1)\n")));
   EXPECT_THAT(tactus({"man"}).out, AllOf(HasSubstr("tactus \\- XML stacks of contact tasks"),
                                          HasSubstr(".SH \"EXIT STATUS\"\n0 done, 1 comparison or golden mismatch"),

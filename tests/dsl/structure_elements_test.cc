@@ -2,8 +2,8 @@
 // the program's own structs begin with.
 //
 // Strategy for the first: one stack that holds every such attribute, and for each attribute another value.  What is
-// built of the two stacks, or the errors told of them, must differ.  Values as they were read do not count, only what is
-// made of them.
+// built of the two stacks, or the errors told of them, must differ.  Values as they were read do not count, only what
+// is made of them.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,8 @@ const std::string everything = R"(<stack format="1" name="whole">
     <object name="table" pose="1 2 3" jitter="0.01 0 0" stiffness="1000" dissipation="3" friction="0.3">
       <box size="1 1 0.1" pose="0 0 0.25"/></object>
     <object name="thing" on="table" class="rough"><plane pose="0 0 0.5"/><sphere radius="0.11" pose="0 0 0.125"/>
-      <cylinder radius="0.12" length="0.32" pose="0 0 0.375"/><capsule radius="0.13" length="0.33" pose="0 0 0.625"/></object>
+      <cylinder radius="0.12" length="0.32" pose="0 0 0.375"/>
+      <capsule radius="0.13" length="0.33" pose="0 0 0.625"/></object>
   </scene>
   <signals><test.probe name="a"/></signals>
   <level priority="2" weight="5" strict="false" active="true" active-from="0.1" active-until="0.8" active-ramp="0.2">
@@ -215,9 +216,9 @@ struct Plain {
   std::unique_ptr<control::Controller> controller;
 
   explicit Plain(const std::string& inside) {
-    stack = dsl::readStack(writeFile("stack.xml", smallStack(inside + "<level priority=\"1\"><test.pull name=\"p\"/></level>",
-                                                             "<controller backend=\"all\"/>")),
-                           registry, readOptions());
+    const std::string text = smallStack(inside + "<level priority=\"1\"><test.pull name=\"p\"/></level>",
+                                        "<controller backend=\"all\"/>");
+    stack = dsl::readStack(writeFile("stack.xml", text), registry, readOptions());
     controller = dsl::compile(stack, registry);
   }
 };

@@ -60,7 +60,8 @@ TEST(XmlScan, SaysWhatIsNotWellFormedAndWhere) {
   EXPECT_EQ(errorOf("<a/><b/>"), "4: <b> is a second outermost element: a file has one");
   EXPECT_EQ(errorOf("<a b></a>"), "3: attribute 'b' has no '='");
   EXPECT_EQ(errorOf("<a b=1></a>"), "3: attribute 'b' has no value in quotes");
-  EXPECT_EQ(errorOf("<a b=\"1></a>"), "3: the value of attribute 'b' has no closing quote: it was opened in line 1, column 6");
+  EXPECT_EQ(errorOf("<a b=\"1></a>"),
+            "3: the value of attribute 'b' has no closing quote: it was opened in line 1, column 6");
   EXPECT_EQ(errorOf("<a b='1' b='2'/>"), "9: attribute 'b' is given twice");
   EXPECT_EQ(errorOf("<a b='1'c='2'/>"), "8: a blank was expected before the next attribute of <a>: the value of attribute "
                                         "'b', opened in line 1, column 6, ends here");

@@ -44,8 +44,8 @@ int alike(const std::string& name, const std::map<std::string, std::string>& opt
 }
 
 TEST(Defaults, OfTheNullSpaceCascade) {
-  EXPECT_EQ(alike("null-space", {}, [] { return std::make_unique<null_space::NullSpace>(null_space::NullSpaceOptions()); }),
-            20);
+  const Make make = [] { return std::make_unique<null_space::NullSpace>(null_space::NullSpaceOptions()); };
+  EXPECT_EQ(alike("null-space", {}, make), 20);
 }
 
 TEST(Defaults, OfTheHierarchicalProgramme) {
@@ -68,7 +68,8 @@ TEST(Defaults, OfTheWeightedProgramme) {
     qp::WeightedQpOptions other;
     set(other);
     EXPECT_LT(alike("qp", {{"solver", "active-set"}}, make(other)), 20)
-        << other.weight_ratio << " " << other.force_weight << " " << other.regularisation << " " << other.friction_edges;
+        << other.weight_ratio << " " << other.force_weight << " " << other.regularisation << " "
+        << other.friction_edges;
   }
 }
 
