@@ -6,13 +6,14 @@ set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g" CACHE STRING "" FORCE)
 
 option(TACTUS_WERROR "Warnings are errors" OFF)
 option(TACTUS_SANITIZE "Address and undefined-behaviour sanitizers" OFF)
+option(TACTUS_FUZZ "The programs of tests/fuzz (clang alone has libFuzzer)" OFF)
 
 add_library(tactus_flags INTERFACE)
 set_target_properties(tactus_flags PROPERTIES EXPORT_NAME flags)
 target_compile_features(tactus_flags INTERFACE cxx_std_20)
 # -Wrestrict raises false alarms on temporaries of std::string in g++ 12 (GCC bug 105651).
 target_compile_options(tactus_flags INTERFACE -ffp-contract=off
-  "$<BUILD_INTERFACE:-Wall;-Wextra;-Wno-restrict;$<$<BOOL:${TACTUS_WERROR}>:-Werror>>")
+  "$<BUILD_INTERFACE:-Wall;-Wextra;$<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>;$<$<BOOL:${TACTUS_WERROR}>:-Werror>>")
 target_compile_definitions(tactus_flags INTERFACE $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
 target_include_directories(tactus_flags INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                            $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tactus>)
@@ -20,4 +21,11 @@ if(TACTUS_SANITIZE)
   target_compile_options(tactus_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
                                                 -fno-omit-frame-pointer)
   target_link_options(tactus_flags INTERFACE -fsanitize=address,undefined)
+endif()
+if(TACTUS_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "TACTUS_FUZZ needs clang: cmake --preset fuzz")
+  endif()
+  # Eigen adds offsets to the null pointer of empty matrices, and reads nothing there.
+  target_compile_options(tactus_flags INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize=pointer-overflow)
 endif()

@@ -87,7 +87,6 @@ class Maker {
   }
 
   dsl::ElementInstance instanceOf(const ElementRow& row, const std::string& name) {
-    if (needsChildren(row)) throw NoGuess{"<" + row.name + "> needs elements inside, and nothing tells which"};
     std::map<std::string, std::string> given;
     if (row.attribute("name")) given["name"] = name;
     for (const AttributeRow& attribute : row.attributes) {
@@ -99,7 +98,27 @@ class Maker {
         given[attribute.name] = guess(row, attribute);
       }
     }
-    return {control::makeValues(row, given), name, {}, "<" + row.name + ">"};
+    dsl::ElementInstance instance{control::makeValues(row, given), name, {}, "<" + row.name + ">"};
+    addChildren(row, instance.values);
+    return instance;
+  }
+
+  /// As few elements inside as the row lets there be.
+  void addChildren(const ElementRow& row, control::ElementValues& into) {
+    for (const control::ChildRow& child : row.children) {
+      const ElementRow* inner = registry_.elements().find(child.element);
+      if (child.min > 0 && !inner) throw NoGuess{"<" + row.name + "> needs elements inside, and nothing tells which"};
+      for (int i = 0; i < child.min; ++i) {
+        std::map<std::string, std::string> given;
+        for (const AttributeRow& attribute : inner->attributes) {
+          if (!attribute.required) continue;
+          given[attribute.name] = attribute.type == ValueType::port ? port(attribute) : guess(*inner, attribute);
+          if (attribute.type == ValueType::identifier) given[attribute.name] += "-" + std::to_string(i + 1);
+        }
+        into.children.push_back(control::makeValues(*inner, given));
+        addChildren(*inner, into.children.back());
+      }
+    }
   }
 
   void addObject(const ElementRow& row) {

@@ -86,6 +86,7 @@ inline constexpr Code out_of_reach{"W025", "a place cannot be reached"};
 inline constexpr Code unreachable_phase{"W026", "nothing leads to a phase"};
 inline constexpr Code deprecated_part{"W011", "an element or attribute is deprecated"};
 inline constexpr Code former_name{"W012", "an element or attribute has another name now"};
+inline constexpr Code unknown_figure{"W013", "a target names no figure of the run"};
 }  // namespace code
 
 inline constexpr std::array all_codes{
@@ -105,6 +106,6 @@ inline constexpr std::array all_codes{
     code::meaningless_part,   code::forgotten_centre,   code::unread_part,      code::lost_digits,
     code::unused_signal,      code::dead_level,         code::duplicate_rows,     code::posture_above,
     code::too_many_contacts,  code::unstable_gains,     code::out_of_reach,       code::unreachable_phase,
-    code::deprecated_part,    code::former_name};
+    code::deprecated_part,    code::former_name,        code::unknown_figure};
 
 }  // namespace tactus::dsl

@@ -56,7 +56,8 @@ void Findings::errorAtName(const Code& code, const XmlElement& element, const Xm
 
 void Findings::errorAtValue(const Code& code, const XmlElement& element, const XmlAttribute& attribute,
                             const std::string& message, const std::string& suggestion) {
-  Diagnostic diagnostic = make(code, *element.source, attribute.value_at, attribute.value_size, message);
+  const std::string from = attribute.brought_by.empty() ? "" : "; the value comes from " + attribute.brought_by;
+  Diagnostic diagnostic = make(code, *element.source, attribute.value_at, attribute.value_size, message + from);
   diagnostic.suggestion = suggestion;
   diagnostic.path = element.path();
   add(std::move(diagnostic));

@@ -27,6 +27,8 @@ std::vector<std::string> linkNames(const description::Robot& robot, bool with_gr
   return names;
 }
 
+std::string unitText(const std::string& unit) { return unit == "1" ? "a number without unit" : unit; }
+
 std::vector<std::string> jointNames(const description::Robot& robot) {
   std::vector<std::string> names = namesOf(robot.joint_groups);
   for (int i : robot.movingJoints()) names.push_back(robot.joints[static_cast<std::size_t>(i)].name);
@@ -147,7 +149,8 @@ void ReferenceChecker::checkPort(const CheckedElement& element, const AttributeR
                of_type.size() == 1 ? signal + "." + of_type.front() : "");
   if (!row.unit.empty() && !known->unit.empty() && known->unit != row.unit)
     return say(code::wrong_port_unit, element, row,
-               "'" + text + "' is in " + known->unit + ", but '" + row.name + "' takes " + row.unit);
+               "'" + text + "' is " + (known->unit == "1" ? "" : "in ") + unitText(known->unit) +
+                   ", but '" + row.name + "' takes " + unitText(row.unit));
   if (row.count > 0 && known->dimension > 0 && known->dimension != row.count)
     say(code::wrong_port_unit, element, row,
         "'" + text + "' has " + std::to_string(known->dimension) + " numbers, but '" + row.name + "' takes " +

@@ -18,6 +18,7 @@ constexpr std::size_t most_of_all = 64 << 20;
 struct Parameter {
   std::string value;
   std::string setting;
+  std::string origin;                                              // as a message names it
 };
 
 class DocumentReader {
@@ -180,9 +181,14 @@ class DocumentReader {
     if (value->value.find("${") != std::string::npos)
       return findings_.errorAtValue(code::bad_value, element, *value,
                                     "the value of a parameter is taken as written: '${' has no meaning in it");
-    Parameter parameter{value->value, ""};
-    if (const auto given = set_.find(name->value); given != set_.end())
-      parameter = {given->second, "--set " + given->first + "=" + given->second};
+    const description::Place place = element.source->text.place(value->value_at);
+    Parameter parameter{value->value, "",
+                        "parameter '" + name->value + "' at " + place.file + ":" + std::to_string(place.line) + ":" +
+                            std::to_string(place.column)};
+    if (const auto given = set_.find(name->value); given != set_.end()) {
+      const std::string setting = "--set " + given->first + "=" + given->second;
+      parameter = {given->second, setting, setting};
+    }
     if (!parameters_.emplace(name->value, parameter).second)
       findings_.errorAtValue(code::duplicate_name, element, *name,
                              "the stack has a parameter '" + name->value + "' already");
@@ -216,7 +222,7 @@ class DocumentReader {
 
   void substitute(const XmlElement& element, XmlAttribute& attribute) {
     const std::string written = attribute.value;
-    std::string text, setting;
+    std::string text, setting, origins;
     std::size_t at = 0;
     for (std::size_t open; (open = written.find("${", at)) != std::string::npos;) {
       const std::size_t close = written.find('}', open);
@@ -229,10 +235,13 @@ class DocumentReader {
       }
       text += written.substr(at, open - at) + found->second.value;
       if (setting.empty()) setting = found->second.setting;
+      if (origins.find(found->second.origin) == std::string::npos)
+        origins += (origins.empty() ? "" : ", ") + found->second.origin;
       at = close + 1;
     }
     attribute.value = text + written.substr(at);
     attribute.setting = setting;
+    attribute.brought_by = origins;
   }
 
   /// Points at the ${…} itself.

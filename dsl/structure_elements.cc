@@ -1,5 +1,6 @@
 #include "dsl/read_stack.h"
 #include "dsl/shape_elements.h"
+#include "framework/control/controller.h"
 
 namespace tactus::dsl {
 namespace {
@@ -7,7 +8,13 @@ namespace {
 using control::AttributeRow;
 using control::ElementKind;
 using control::ElementRow;
+using control::formatNumber;
 using control::ValueType;
+
+// Whose members' defaults are the language's.
+const control::ControllerOptions controller_options;
+const description::ContactMaterial material;
+const RunOptions run_options;
 
 const AttributeRow class_of_object{
     .name = "class",
@@ -119,11 +126,14 @@ ElementRow objectRow() {
                          {.name = "jitter", .type = ValueType::reals, .unit = "m", .default_text = "0 0 0",
                           .description = "Each coordinate moves by a uniform draw from ± this, drawn from the seed.",
                           .lower = 0, .count = 3},
-                         {.name = "stiffness", .type = ValueType::real, .unit = "N/m", .default_text = "2000",
+                         {.name = "stiffness", .type = ValueType::real, .unit = "N/m",
+                          .default_text = formatNumber(material.stiffness),
                           .description = "Of the Hunt–Crossley normal force.", .lower = 0, .lower_open = true},
-                         {.name = "dissipation", .type = ValueType::real, .unit = "s/m", .default_text = "2",
+                         {.name = "dissipation", .type = ValueType::real, .unit = "s/m",
+                          .default_text = formatNumber(material.dissipation),
                           .description = "Of the Hunt–Crossley normal force.", .lower = 0},
-                         {.name = "friction", .type = ValueType::real, .unit = "1", .default_text = "0.2",
+                         {.name = "friction", .type = ValueType::real, .unit = "1",
+                          .default_text = formatNumber(material.friction),
                           .description = "Coulomb coefficient μ.", .lower = 0}},
           .children = {{"@shape", 1}}};
 }
@@ -180,10 +190,12 @@ ElementRow controllerRow() {
                           .description = "The most that a joint's torque changes in a second, as a multiple of its "
                                          "effort limit; not given: without bound.",
                           .lower = 0, .lower_open = true},
-                         {.name = "ramp", .type = ValueType::real, .unit = "s", .default_text = "0.1",
+                         {.name = "ramp", .type = ValueType::real, .unit = "s",
+                          .default_text = formatNumber(controller_options.ramp),
                           .description = "Time in which the torque goes over where something is switched.",
                           .lower = 0},
-                         {.name = "hold", .type = ValueType::real, .unit = "s", .default_text = "0.02",
+                         {.name = "hold", .type = ValueType::real, .unit = "s",
+                          .default_text = formatNumber(controller_options.hold),
                           .description = "Time that the last good value of a joint, or the last solved torque, stands "
                                          "in where there is none; then the robot's weight is borne.",
                           .lower = 0},
@@ -221,10 +233,11 @@ ElementRow runRow() {
   return {.name = "run",
           .kind = ElementKind::structure,
           .description = "What `tactus run` does when it is not told otherwise.",
-          .attributes = {{.name = "duration", .type = ValueType::real, .unit = "s", .default_text = "10",
+          .attributes = {{.name = "duration", .type = ValueType::real, .unit = "s",
+                          .default_text = formatNumber(run_options.duration),
                           .description = "Simulated time, at least one tick.", .lower = 0, .upper = longest_run,
                           .lower_open = true},
-                         {.name = "seed", .type = ValueType::integer, .default_text = "1",
+                         {.name = "seed", .type = ValueType::integer, .default_text = std::to_string(run_options.seed),
                           .description = "Of every draw; 0 draws no jitter.", .lower = 0}},
           .children = {{"record", 0, 1}, {"@recorder"}, {"target"}}};
 }
@@ -244,9 +257,10 @@ ElementRow recordRow() {
   return {.name = "record",
           .kind = ElementKind::structure,
           .description = "What goes into log.csv.",
-          .attributes = {{.name = "columns", .type = ValueType::choice, .default_text = "default",
+          .attributes = {{.name = "columns", .type = ValueType::choice, .default_text = run_options.columns,
                           .description = "`all` adds every joint.", .choices = {"default", "all"}},
-                         {.name = "rate", .type = ValueType::real, .unit = "Hz", .default_text = "100",
+                         {.name = "rate", .type = ValueType::real, .unit = "Hz",
+                          .default_text = formatNumber(run_options.record_rate),
                           .description = "Rows per simulated second.", .lower = 0, .lower_open = true}}};
 }
 

@@ -102,7 +102,7 @@ std::unique_ptr<XmlElement> parseXml(std::shared_ptr<const XmlSource> source, Fi
     for (const ScannedAttribute& attribute : scanned.attributes) {
       const char* value = node->Attribute(attribute.name.c_str());
       element->attributes.push_back(
-          {attribute.name, value ? value : "", attribute.name_at, attribute.value_at, attribute.value_size, ""});
+          {attribute.name, value ? value : "", attribute.name_at, attribute.value_at, attribute.value_size, "", ""});
     }
     made.push_back(element.get());
     if (scanned.parent < 0) {

@@ -24,6 +24,7 @@ struct XmlAttribute {
   std::size_t value_at = 0;
   std::size_t value_size = 0;
   std::string setting;                                             ///< "--set name=value" that reached it, "" = none
+  std::string brought_by;                                          ///< "parameter 'press' at stack.xml:3:28", "" = none
 };
 
 /// An element that knows where it stands.  Values come from tinyxml2, places from Tactus's own scan.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "dsl/source_text.h"
+
 namespace tactus::dsl {
 namespace {
 
@@ -37,6 +39,11 @@ class Scanner {
   bool failed() const { return result_.error.has_value(); }
   void fail(std::size_t at, std::string message, bool several_roots = false) {
     if (!failed()) result_.error = ScanError{at, std::move(message), several_roots};
+  }
+  /// "line 4, column 7"
+  std::string placeText(std::size_t at) const {
+    const description::Place place = SourceText("", std::string(text_)).place(at);
+    return "line " + std::to_string(place.line) + ", column " + std::to_string(place.column);
   }
   bool startsWith(std::string_view word) const { return text_.substr(at_, word.size()) == word; }
   void skipBlanks() {
@@ -134,7 +141,8 @@ class Scanner {
     if (open_.empty()) return fail(start, "</" + std::string(name) + "> closes nothing");
     ScannedElement& element = result_.elements[open_.back()];
     if (element.name != name)
-      return fail(start, "</" + std::string(name) + "> stands where </" + element.name + "> was expected");
+      return fail(start, "</" + std::string(name) + "> stands where </" + element.name + "> was expected: <" +
+                             element.name + "> was opened in " + placeText(element.at));
     element.end = at_;
     open_.pop_back();
   }
@@ -152,7 +160,9 @@ class Scanner {
       skipBlanks();
       if (at_ >= text_.size()) return fail(element.at, "the tag <" + element.name + "> is not ended by '>'");
       if (text_[at_] == '>' || startsWith("/>")) break;
-      if (at_ == before) return fail(at_, "a blank was expected before the next attribute of <" + element.name + ">");
+      if (at_ == before)
+        return fail(at_, "a blank was expected before the next attribute of <" + element.name + ">" +
+                             lastValue(element));
       scanAttribute(element);
     }
     if (failed()) return;
@@ -161,6 +171,13 @@ class Scanner {
     element.end = at_;
     result_.elements.push_back(std::move(element));
     if (!closed) open_.push_back(static_cast<int>(result_.elements.size()) - 1);
+  }
+
+  /// Where the value before began: its quote may have been meant to close earlier.
+  std::string lastValue(const ScannedElement& element) const {
+    if (element.attributes.empty()) return "";
+    const ScannedAttribute& last = element.attributes.back();
+    return ": the value of attribute '" + last.name + "', opened in " + placeText(last.value_at - 1) + ", ends here";
   }
 
   void scanAttribute(ScannedElement& element) {
@@ -177,12 +194,15 @@ class Scanner {
     if (quote != '"' && quote != '\'') return fail(attribute.name_at, what + " has no value in quotes");
     attribute.value_at = ++at_;
     const std::size_t end = text_.find(quote, at_);
-    if (end == std::string_view::npos) return fail(attribute.name_at, "the value of " + what + " has no closing quote");
+    if (end == std::string_view::npos)
+      return fail(attribute.name_at, "the value of " + what + " has no closing quote: it was opened in " +
+                                         placeText(attribute.value_at - 1));
     attribute.value_size = end - at_;
     for (; at_ < end && !failed(); ++at_) {
       checkControl(at_);
       if (text_[at_] == '<')
-        fail(at_, "'<' stands in the value of " + what + ": write '&lt;', or close the quote before it");
+        fail(at_, "'<' stands in the value of " + what + ", whose quote was opened in " +
+                      placeText(attribute.value_at - 1) + ": write '&lt;', or close the quote before it");
       if (text_[at_] == '&') scanReference(end);
     }
     if (failed()) return;

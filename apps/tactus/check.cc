@@ -1,10 +1,14 @@
+#include <algorithm>
 #include <iostream>
 
 #include "apps/tactus/errors.h"
+#include "apps/tactus/session.h"
 #include "apps/tactus/stack_arguments.h"
 #include "apps/tactus/text.h"
-#include "dsl/compile.h"
+#include "dsl/codes.h"
 #include "dsl/lint.h"
+#include "dsl/nearest_name.h"
+#include "dsl/source_text.h"
 #include "framework/runtime/file_error.h"
 #include "sim/simbody_plant.h"
 
@@ -28,16 +32,40 @@ struct Findings {
   int exit_code = exit_done;
 };
 
+/// Targets whose figure no run of this stack will have.
+std::vector<dsl::Diagnostic> unknownTargets(const Session& session) {
+  std::vector<dsl::Diagnostic> found;
+  const std::vector<std::string> names = session.metricNames();
+  for (const dsl::ResolvedElement& element : session.stack().elements) {
+    if (element.values.row().name != "target") continue;
+    const control::Value& metric = element.values.value("metric");
+    if (std::find(names.begin(), names.end(), metric.text) != names.end()) continue;
+    dsl::Diagnostic warning;
+    warning.severity = dsl::Severity::warning;
+    warning.code = dsl::code::unknown_figure.id;
+    warning.message = "no run of this stack has a figure '" + metric.text + "'";
+    warning.suggestion = dsl::nearestName(metric.text, names);
+    warning.place = metric.origin.place;
+    warning.length = dsl::countCharacters(metric.text);
+    warning.path = element.path;
+    const auto& files = session.stack().files;
+    if (const auto file = files.find(warning.place.file); file != files.end())
+      warning.source_line = dsl::SourceText(file->first, file->second).lineAt(warning.place.line);
+    found.push_back(std::move(warning));
+  }
+  return found;
+}
+
 Findings checkFile(Program& program, const StackOptions& options, bool strict) {
   Findings findings;
   try {
     const dsl::Stack stack = program.read(options, &findings.warnings);
-    if (!strict) {
-      dsl::compile(stack, program.registry());
-      return findings;
-    }
-    const std::vector<dsl::Diagnostic> remarks = dsl::lint(stack, program.registry(), sim::PlantOptions().step);
-    findings.warnings.insert(findings.warnings.end(), remarks.begin(), remarks.end());
+    const auto warn = [&](const std::vector<dsl::Diagnostic>& remarks) {
+      findings.warnings.insert(findings.warnings.end(), remarks.begin(), remarks.end());
+    };
+    warn(unknownTargets(Session(stack, program.registry())));
+    if (!strict) return findings;
+    warn(dsl::lint(stack, program.registry(), sim::PlantOptions().step));
     if (!findings.warnings.empty()) findings.exit_code = exit_invalid_stack;
   } catch (const dsl::InvalidStack& invalid) {
     findings.errors = invalid.diagnostics;

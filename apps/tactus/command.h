@@ -52,5 +52,6 @@ void addSchema(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
 void addNew(CLI::App& program, Context& context);
 void addCompletion(CLI::App& program, Context& context);
+void addMan(CLI::App& program, Context& context);
 
 }  // namespace tactus::app

@@ -45,6 +45,40 @@ int list(const control::ElementTable& table, bool json) {
   return exit_done;
 }
 
+/// "'held' is a port of contacts", "" where nothing has an attribute or a port of that name.
+std::string ownersOf(const std::string& name, const control::ElementTable& table) {
+  std::vector<std::string> attribute_of, port_of;
+  for (const ElementRow& row : table.rows()) {
+    if (row.attribute(name)) attribute_of.push_back(row.name);
+    for (const control::PortRow& port : row.ports)
+      if (port.name == name) port_of.push_back(row.name);
+  }
+  const auto owners = [&](const char* what, std::vector<std::string> rows) {
+    constexpr size_t most = 6;
+    const bool many = rows.size() > most;
+    if (many) rows.resize(most);
+    return rows.empty() ? "" : "'" + name + "' is " + what + " of " + joined(rows) + (many ? ", …" : "");
+  };
+  const std::string attribute = owners("an attribute", attribute_of), port = owners("a port", port_of);
+  return attribute + (attribute.empty() || port.empty() ? "" : " and ") + port;
+}
+
+/// What may help somebody who asked for what is no element: an attribute or port, alone or as signal.port, or a slip.
+std::string hintFor(const std::string& asked, const control::ElementTable& table) {
+  const std::string word = asked.substr(asked.find('.') == std::string::npos ? 0 : asked.find('.') + 1);
+  if (const std::string owners = ownersOf(word, table); !owners.empty()) return owners;
+  std::vector<std::string> elements, parts;
+  for (const ElementRow& row : table.rows()) {
+    elements.push_back(row.name);
+    for (const control::AttributeRow& attribute : row.attributes) parts.push_back(attribute.name);
+    for (const control::PortRow& port : row.ports) parts.push_back(port.name);
+  }
+  if (const std::string near = dsl::nearestName(asked, elements); !near.empty()) return "did you mean '" + near + "'?";
+  if (const std::string near = dsl::nearestName(word, parts); !near.empty())
+    return "did you mean '" + near + "'? " + ownersOf(near, table);
+  return "'tactus explain' lists what there is";
+}
+
 int explain(const ExplainArguments& arguments, bool json) {
   if (arguments.at) {
     if (arguments.type.empty()) throw UsageError("--at needs the stack or the run folder that it asks about");
@@ -66,11 +100,9 @@ int explain(const ExplainArguments& arguments, bool json) {
   const control::ElementTable& table = program.registry().elements();
   if (arguments.type.empty()) return list(table, json);
 
-  std::vector<std::string> names;
   ordered_json found = ordered_json::array();
   std::string out;
   for (const ElementRow& row : table.rows()) {
-    names.push_back(row.name);
     if (row.name != arguments.type) continue;
     found.push_back(dsl::elementJson(row));
     out += (out.empty() ? "" : "\n") + dsl::elementText(row);
@@ -83,9 +115,7 @@ int explain(const ExplainArguments& arguments, bool json) {
   if (found.empty()) {
     if (std::filesystem::is_directory(arguments.type))
       throw UsageError("'" + arguments.type + "' is a folder: --at SECONDS says which tick of a run is explained");
-    const std::string nearest = dsl::nearestName(arguments.type, names);
-    const std::string hint = nearest.empty() ? "'tactus explain' lists what there is" : "did you mean '" + nearest + "'?";
-    throw UsageError("nothing is called '" + arguments.type + "'; " + hint);
+    throw UsageError("no element is called '" + arguments.type + "'; " + hintFor(arguments.type, table));
   }
   std::cout << (json ? jsonText(ordered_json{{"elements", found}}, 2) + "\n" : out);
   return exit_done;

@@ -1,5 +1,6 @@
 #include "apps/tactus/explain_stack.h"
 
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -45,7 +46,7 @@ std::string originText(const Origin& origin) {
 
 std::string padded(const std::string& text, size_t width) {
   const auto characters = static_cast<size_t>(dsl::countCharacters(text));
-  return text + std::string(characters < width ? width - characters : 1, ' ');
+  return text + std::string(characters < width ? width - characters : 0, ' ');
 }
 
 /// On one line, with single blanks.
@@ -59,13 +60,38 @@ std::string oneLine(const std::string& text) {
   return out.empty() ? "empty" : out;
 }
 
-void writeValues(const ElementValues& values, const std::string& indent, std::string& out) {
+/// What stands on the left, and where it comes from.
+struct Line {
+  std::string text;
+  std::string origin;
+};
+
+/// Origins in one column, to the right of every line that is not overlong.
+std::string aligned(const std::vector<Line>& lines) {
+  constexpr size_t most = 80;
+  size_t width = 0;
+  for (const Line& line : lines) {
+    const auto characters = static_cast<size_t>(dsl::countCharacters(line.text));
+    if (characters <= most) width = std::max(width, characters);
+  }
+  std::string out;
+  for (const Line& line : lines) out += padded(line.text, width) + "  " + line.origin + "\n";
+  return out;
+}
+
+size_t longestName(const ElementValues& values) {
+  size_t longest = 0;
+  for (const auto& [name, value] : values.all()) longest = std::max(longest, name.size());
+  return longest;
+}
+
+void writeValues(const ElementValues& values, const std::string& indent, size_t names, std::vector<Line>& out) {
   for (const AttributeRow& row : values.row().attributes) {
     if (!values.has(row.name)) continue;
     const Value& value = values.value(row.name);
     const std::string unit = dsl::unitText(row.unit);
     const std::string shown = oneLine(value.text) + (unit.empty() ? "" : " " + unit);
-    out += padded(indent + padded(row.name, 14) + " " + shown, 64) + " " + originText(value.origin) + "\n";
+    out.push_back({indent + padded(row.name, names) + "  " + shown, originText(value.origin)});
   }
 }
 
@@ -94,15 +120,16 @@ int explainStack(const StackOptions& options, const std::vector<std::string>& pl
   Program program(plugins);
   const dsl::Stack stack = readAloud(program, options);
   ordered_json elements = ordered_json::array();
-  std::string out;
+  std::vector<Line> lines;
   for (const dsl::ResolvedElement& element : stack.elements) {
     const std::string indent(static_cast<size_t>(2 * element.depth), ' ');
-    out += padded(indent + "<" + element.values.row().name + ">", 64) + " " + placeText(element.place) + "\n";
-    writeValues(element.values, indent + "  ", out);
+    const size_t names = std::max(longestName(element.values), longestName(element.options));
+    lines.push_back({indent + "<" + element.values.row().name + ">", placeText(element.place)});
+    writeValues(element.values, indent + "  ", names, lines);
     ordered_json attributes = ordered_json::array();
     addValues(element.values, attributes);
     if (hasOptions(element)) {
-      writeValues(element.options, indent + "  ", out);
+      writeValues(element.options, indent + "  ", names, lines);
       addValues(element.options, attributes);
     }
     elements.push_back({{"element", element.values.row().name},
@@ -112,7 +139,7 @@ int explainStack(const StackOptions& options, const std::vector<std::string>& pl
                         {"column", element.place.column},
                         {"values", attributes}});
   }
-  std::cout << (json ? jsonText({{"stack", stack.name}, {"elements", elements}}, 2) + "\n" : out);
+  std::cout << (json ? jsonText({{"stack", stack.name}, {"elements", elements}}, 2) + "\n" : aligned(lines));
   return exit_done;
 }
 

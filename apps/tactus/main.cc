@@ -90,6 +90,7 @@ int runCommand(int argc, char** argv) {
   addFormat(app, context);
   addMigrate(app, context);
   addCompletion(app, context);
+  addMan(app, context);
   // A misspelled command would otherwise be reported as a missing one.  Commands inherit this when they are added, so
   // it comes after them: what they do not know stays an error.
   app.require_subcommand(0, 1);

@@ -130,6 +130,20 @@ std::vector<control::Metric> Session::metrics() const {
   return metrics;
 }
 
+std::vector<std::string> Session::metricNames() const {
+  std::vector<std::string> names;
+  for (const control::Metric& metric : metrics()) names.push_back(metric.name);
+  for (const SoughtFeature& feature : features_) {
+    if (!feature.truth_W) continue;
+    control::FeatureEstimate found = *feature.estimate;
+    found.found = true;
+    for (const control::Metric& metric : runtime::featureMetrics(feature.name, found, feature.truth_W)) {
+      if (std::find(names.begin(), names.end(), metric.name) == names.end()) names.push_back(metric.name);
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> Session::warnings() const {
   std::vector<std::string> warnings = statistics_.warnings();
   for (const control::SwitchedOff& fault : controller_->switchedOff())
@@ -151,7 +165,8 @@ int Session::faultCode() const {
   const auto failed = [](const auto& recorder) { return !recorder->fault().empty(); };
   if (std::any_of(recorders_.begin(), recorders_.end(), failed)) return exit_plugin;
   if (std::any_of(off.begin(), off.end(), [](const control::SwitchedOff& fault) { return fault.threw; })) return exit_plugin;
-  return off.empty() && statistics_.unusableTasks().empty() ? exit_done : exit_numerical;
+  const bool none_solved = statistics_.ticks() > 0 && statistics_.fallbacks == statistics_.ticks();
+  return off.empty() && statistics_.unusableTasks().empty() && !none_solved ? exit_done : exit_numerical;
 }
 
 std::string Session::backEndName() const { return stack_.back_end.row().name; }

@@ -43,6 +43,9 @@ class Session {
   /// Figures of the run so far: contacts, tasks, signals, features.
   std::vector<control::Metric> metrics() const;
 
+  /// Names of all figures that a run of this stack may have; those of a feature that it may never find among them.
+  std::vector<std::string> metricNames() const;
+
   /// What the reader of the figures must know: ticks that fell back and the task that made them, targets of no figure.
   std::vector<std::string> warnings() const;
 

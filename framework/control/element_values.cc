@@ -47,6 +47,13 @@ std::string expectedRange(const AttributeRow& row) {
   return text;
 }
 
+/// What is often meant by a comma among numbers.
+std::string commaHint(const AttributeRow& row, std::string_view text) {
+  if (text.find(',') == std::string_view::npos) return "";
+  const bool several = row.type == ValueType::reals || row.type == ValueType::points;
+  return several ? "; numbers are separated by blanks, not by commas" : "; the decimal sign is a point";
+}
+
 /// One number of the row; appends to `numbers`.
 bool parseNumber(const AttributeRow& row, std::string_view token, std::vector<double>& numbers, std::string& error) {
   const bool whole = row.type == ValueType::integer;
@@ -65,7 +72,8 @@ bool parseNumber(const AttributeRow& row, std::string_view token, std::vector<do
     return false;
   }
   if (result.ec != std::errc() || result.ptr != token.data() + token.size()) {
-    error = quoted(token) + " is not " + (whole ? "an integer" : "a number") + ": expected " + wanted;
+    error = quoted(token) + " is not " + (whole ? "an integer" : "a number") + ": expected " + wanted +
+            commaHint(row, token);
     return false;
   }
   if (!std::isfinite(number)) {
@@ -85,7 +93,7 @@ std::string numbersWord(int count) { return count == 1 ? "1 number" : std::to_st
 bool parseReals(const AttributeRow& row, std::string_view text, std::vector<double>& numbers, std::string& error) {
   const auto words = tokens(text);
   if (row.count > 0 && static_cast<int>(words.size()) != row.count) {
-    error = "expected " + numbersWord(row.count) + ", found " + std::to_string(words.size());
+    error = "expected " + numbersWord(row.count) + ", found " + std::to_string(words.size()) + commaHint(row, text);
     return false;
   }
   if (words.empty()) {

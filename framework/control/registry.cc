@@ -86,8 +86,10 @@ ElementError::ElementError(const ElementValues& child, std::string wrong, const 
 std::vector<AttributeRow> activityAttributes() {
   return {{.name = "active",
            .type = ValueType::port,
+           .unit = "1",
            .default_text = "true",
-           .description = "Whether it takes part: true, false, or a signal's port: while that is above 0.5.",
+           .description =
+               "Whether it takes part: true, false, or a signal's port without unit: while that is above 0.5.",
            .choices = {"true", "false"},
            .port_type = "scalar"},
           {.name = "active-from", .type = ValueType::real, .unit = "s", .description = "Takes part from this time on."},

@@ -24,12 +24,14 @@ void registerElements(control::Registry& registry) {
       "it, within inequality rows and torque limits.";
   row.source = "Escande, Mansard, Wieber (2014), Hierarchical quadratic programming";
   row.attributes = {
-      {.name = "rank-tolerance", .type = ValueType::real, .unit = "1", .default_text = "1e-5",
+      {.name = "rank-tolerance", .type = ValueType::real, .unit = "1",
+       .default_text = control::formatNumber(HqpOptions().rank.rank_tolerance),
        .description =
            "Singular value, of unit rows in the inverse-inertia metric projected into what higher levels left, up to "
            "which a direction is not held.",
        .lower = 0, .upper = 1, .lower_open = true},
-      {.name = "fade", .type = ValueType::real, .unit = "1", .default_text = "1e-3",
+      {.name = "fade", .type = ValueType::real, .unit = "1",
+       .default_text = control::formatNumber(HqpOptions().rank.fade),
        .description =
            "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance.",
        .lower = 0, .upper = 1, .lower_open = true},

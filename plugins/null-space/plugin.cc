@@ -22,6 +22,11 @@ std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
   return std::make_unique<NullSpace>(options);
 }
 
+std::string withoutIt(double control::RankOptions::*number) {
+  return "Without it " + control::formatNumber(NullSpaceOptions().rank.*number) + "; " +
+         control::formatNumber(control::dividing_rank.*number) + " where the projection is consistent";
+}
+
 void registerElements(control::Registry& registry) {
   control::ElementRow row;
   row.name = "null-space";
@@ -45,12 +50,12 @@ void registerElements(control::Registry& registry) {
       {.name = "rank-tolerance", .type = ValueType::real, .unit = "1",
        .description =
            "Singular value, of unit rows in the inverse-inertia metric projected into what higher levels left, up to "
-           "which a direction is not held. Without it 1e-8; 1e-5 where the projection is consistent.",
+           "which a direction is not held. " + withoutIt(&control::RankOptions::rank_tolerance) + ".",
        .lower = 0, .upper = 1, .lower_open = true},
       {.name = "fade", .type = ValueType::real, .unit = "1",
        .description =
-           "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance. Without "
-           "it 1e-6; 1e-3 where the projection is consistent, which divides by singular values.",
+           "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance. " +
+           withoutIt(&control::RankOptions::fade) + ", which divides by singular values.",
        .lower = 0, .upper = 1, .lower_open = true},
   };
   registry.addBackEnd(std::move(row), make);

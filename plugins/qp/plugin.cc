@@ -46,18 +46,22 @@ void registerElements(control::Registry& registry) {
            "ipopt: primal-dual interior point. nlopt: sequential least squares (SLSQP). active-set: Tactus's own, for "
            "real time: a dual active set that starts from the rows at their bounds in the last tick.",
        .choices = {"ipopt", "nlopt", "active-set"}},
-      {.name = "weight-ratio", .type = ValueType::real, .unit = "1", .default_text = "100",
+      {.name = "weight-ratio", .type = ValueType::real, .unit = "1",
+       .default_text = control::formatNumber(WeightedQpOptions().weight_ratio),
        .description = "Weight of a level over that of the next; the first has 1. A level's own weight replaces it.",
        .lower = 0, .lower_open = true},
-      {.name = "force-weight", .type = ValueType::real, .unit = "1", .default_text = "1",
+      {.name = "force-weight", .type = ValueType::real, .unit = "1",
+       .default_text = control::formatNumber(WeightedQpOptions().force_weight),
        .description = "w_f, weight of the contact forces' distance from their references.", .lower = 0,
        .lower_open = true},
-      {.name = "regularisation", .type = ValueType::real, .unit = "1", .default_text = "0.01",
+      {.name = "regularisation", .type = ValueType::real, .unit = "1",
+       .default_text = control::formatNumber(WeightedQpOptions().regularisation),
        .description =
            "w_r over the least level weight: price of torque, in the inverse-inertia metric, that no task asks for. "
            "Acceleration objective only.",
        .lower = 0, .lower_open = true},
-      {.name = "friction-edges", .type = ValueType::integer, .unit = "1", .default_text = "4",
+      {.name = "friction-edges", .type = ValueType::integer, .unit = "1",
+       .default_text = std::to_string(WeightedQpOptions().friction_edges),
        .description = "Edges of the pyramid inside each friction cone.", .lower = 3, .upper = 64},
   };
   registry.addBackEnd(std::move(row), make);

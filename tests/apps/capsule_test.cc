@@ -48,6 +48,7 @@ TEST(Capsule, OfTheFirstFiveFailedTicks) {
                           "capsule-24.json"));
   EXPECT_EQ(moody.run["capsules"].size(), 5u);
   EXPECT_EQ(moody.run["capsules"][0], "capsule-20.json");
+  EXPECT_EQ(moody.outcome.exit_code, 0) << "20 ticks were solved";
   EXPECT_THAT(moody.outcome.err, HasSubstr("failed ticks are kept: tactus solve " + moody.folder.file("run") +
                                            "/capsule-20.json\n"));
 }
@@ -254,6 +255,8 @@ TEST(Capsule, OfARealStackBeyondItsActuators) {
   const Outcome run = tactus({"run", stack, "--duration", "0.02", "--out", folder.file("run")});
   const std::vector<std::string> capsules = capsulesIn(folder.file("run"));
   ASSERT_EQ(capsules.size(), 5u) << run.err;
+  EXPECT_EQ(run.exit_code, 5) << "no tick was solved";
+  EXPECT_THAT(run.err, HasSubstr("warning: 20 of 20 ticks fell back: "));
   EXPECT_THAT(run.err, HasSubstr("warning: first infeasible at t = 0 s: gravity and motion alone ask for more than the "
                                  "actuators have: joint hip by "));
   for (const std::string& name : capsules) {

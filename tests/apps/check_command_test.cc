@@ -156,6 +156,48 @@ TEST(CheckCommand, TheSuccessiveCascadeKeepsItsFirstLevelStrictly) {
                                      "only its first level strictly"));
 }
 
+TEST(CheckCommand, WarnsOfATargetThatNoRunCanReach) {
+  const auto check = [](const std::string& metric, const std::vector<std::string>& more = {}) {
+    const TemporaryFolder folder;
+    std::vector<std::string> words{"check", changedStack(folder, "<run duration=\"1\" seed=\"1\">",
+                                                         "<run duration=\"1\" seed=\"1\">\n<target metric=\"" + metric +
+                                                             "\" upper=\"1\"/>")};
+    words.insert(words.end(), more.begin(), more.end());
+    return tactus(words);
+  };
+  const Outcome slip = check("contact_force_maen_N");
+  EXPECT_EQ(slip.exit_code, 0);
+  EXPECT_THAT(slip.err, AllOf(HasSubstr("stack.xml:16:17: warning[W013]: no run of this stack has a figure "
+                                        "'contact_force_maen_N'\n"),
+                              HasSubstr("did you mean 'contact_force_mean_N'?")));
+  EXPECT_EQ(check("contact_force_maen_N", {"--strict"}).exit_code, 3);
+  for (const char* known : {"contact_force_mean_N", "points_touched", "undesired_force_peak_N"})
+    EXPECT_EQ(check(known).err, "") << known;
+}
+
+TEST(CheckCommand, KnowsTheFiguresOfAFeatureBeforeItIsFound) {
+  const Outcome outcome = tactus({"check", std::string(TACTUS_SOURCE_DIR) + "/examples/explore_table/stack.xml"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err, "") << "it has a target bump_position_error_m";
+}
+
+TEST(CheckCommand, NamesTheParameterThatBroughtAValue) {
+  const TemporaryFolder folder;
+  const std::string stack =
+      changedStack(folder, "<robot ", "<parameter name=\"stiff\" value=\"1,5\"/>\n<robot ");
+  std::string text = contentOf(stack);
+  text.replace(text.find("stiffness=\"1\""), 13, "stiffness=\"${stiff}\"");
+  folder.write("stack.xml", text);
+  const std::string place = text.substr(0, text.find("<parameter name=\"stiff\""));
+  const auto line = 1 + std::count(place.begin(), place.end(), '\n');
+  EXPECT_THAT(tactus({"check", stack}).err,
+              HasSubstr("'1,5' is not a number: expected a number ≥ 0 (N m/rad); numbers are separated by blanks, not by "
+                        "commas; the value comes from parameter 'stiff' at " +
+                        stack + ":" + std::to_string(line) + ":"));
+  EXPECT_THAT(tactus({"check", stack, "--set", "stiff=x"}).err,
+              HasSubstr("'x' is not a number: expected a number ≥ 0 (N m/rad); the value comes from --set stiff=x\n"));
+}
+
 TEST(CheckCommand, UnknownAttributeWithoutANearNameListsTheOthers) {
   const TemporaryFolder folder;
   const Outcome outcome = tactus({"check", changedStack(folder, "stiffness=", "zzzzzz=")});

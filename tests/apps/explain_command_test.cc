@@ -69,9 +69,37 @@ TEST(ExplainCommand, PluginsElementsToo) {
 TEST(ExplainCommand, UnknownNameTellsTheNearest) {
   const Outcome outcome = tactus({"explain", "impedence"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.err, "tactus: nothing is called 'impedence'; did you mean 'impedance'?\n");
+  EXPECT_EQ(outcome.err, "tactus: no element is called 'impedence'; did you mean 'impedance'?\n");
   EXPECT_THAT(tactus({"explain", "zzzzzz"}).err,
-              HasSubstr("nothing is called 'zzzzzz'; 'tactus explain' lists what there is"));
+              HasSubstr("no element is called 'zzzzzz'; 'tactus explain' lists what there is"));
+}
+
+TEST(ExplainCommand, AttributesAndPortsLeadToTheirElements) {
+  EXPECT_THAT(tactus({"explain", "held"}).err,
+              HasSubstr("no element is called 'held'; 'held' is a port of contacts\n"));
+  EXPECT_THAT(tactus({"explain", "touch.held"}).err, HasSubstr("'held' is a port of contacts\n"));
+  EXPECT_THAT(tactus({"explain", "posture.among"}).err, HasSubstr("'among' is an attribute of posture\n"));
+  EXPECT_THAT(tactus({"explain", "amogn"}).err,
+              HasSubstr("did you mean 'among'? 'among' is an attribute of posture\n"));
+  EXPECT_THAT(tactus({"explain", "name"}).err, HasSubstr(", …\n"));
+}
+
+TEST(ExplainCommand, LongNamesStandInTheColumnsToo) {
+  const TemporaryFolder folder;
+  const std::string stack = changedStack(folder, "<controller ", "<controller torque-limits-priority=\"1\" ");
+  std::stringstream out(tactus({"explain", stack, "--backend", "hqp"}).out);
+  std::set<size_t> value_columns, origin_columns;
+  bool inside = false;
+  for (std::string line; std::getline(out, line);) {
+    if (line.starts_with("  <")) inside = line.starts_with("  <controller>");
+    if (!inside || line.starts_with("  <")) continue;
+    const size_t name = line.find_first_not_of(' '), gap = line.find("  ", name);
+    const size_t value = line.find_first_not_of(' ', gap), end = line.find("  ", value);
+    value_columns.insert(value);
+    origin_columns.insert(line.find_first_not_of(' ', end));
+  }
+  EXPECT_EQ(value_columns.size(), 1u);
+  EXPECT_EQ(origin_columns.size(), 1u);
 }
 
 /// Values of the stack, with who gave them: attribute, class, --set or the table.
@@ -82,10 +110,10 @@ TEST(ExplainCommand, TellsWhereAStacksValuesComeFrom) {
                                          "<level priority=\"2\"><posture class=\"soft\" ");
   const Outcome outcome = tactus({"explain", stack, "--set", "press=0.7"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      force          0.7 N +--set press=0.7, .*stack.xml:12:73\n"));
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      damping        0.4 N m s/rad +[^ ]*stack.xml:14:"));
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    ramp           0.1 s +default\n"));
-  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    projection     [a-z]+ +default\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      force +0.7 N +--set press=0.7, .*stack.xml:12:73\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("      damping +0.4 N m s/rad +[^ ]*stack.xml:14:"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    ramp +0.1 s +default\n"));
+  EXPECT_THAT(outcome.out, ::testing::ContainsRegex("    projection +[a-z]+ +default\n"));
 
   const nlohmann::json json = tactus({"explain", stack, "--resolved", "--json"}).json();
   EXPECT_EQ(json["stack"], "press");

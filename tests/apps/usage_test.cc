@@ -33,7 +33,8 @@ TEST(Usage, EveryCommandHasHelpWithExamples) {
                                                        {"explain"},
                                                        {"golden", "verify"},
                                                        {"plugins", "list"},
-                                                       {"completion"}};
+                                                       {"completion"},
+                                                       {"man"}};
   for (std::vector<std::string> command : commands) {
     command.push_back("--help");
     const Outcome outcome = tactus(command);

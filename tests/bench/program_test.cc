@@ -32,7 +32,7 @@ TEST(BenchDynamics, SaysThatAFilterFindsNothing) {
 TEST(InstallDependencies, NamesAnUnknownArgument) {
   const Outcome outcome = run(TACTUS_SOURCE_DIR "/scripts/install_dependencies --everything");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.text, "install_dependencies: unknown argument '--everything': there are --peers and --package\n");
+  EXPECT_EQ(outcome.text, "install_dependencies: unknown argument '--everything': there are --peers, --package and --fuzz\n");
 }
 
 }  // namespace

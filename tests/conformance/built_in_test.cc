@@ -32,6 +32,12 @@ TEST(BuiltIns, KeepTheLaws) {
   EXPECT_EQ(not_asked, std::set<std::string>{"bias"}) << report.text();
 }
 
+TEST(BuiltIns, ConformWithoutAStackToo) {
+  Workshop workshop;
+  const Report report = checkElements(workshop.registry(), allButBackEnds(workshop.registry()));
+  EXPECT_TRUE(report.conforms()) << report.text();
+}
+
 TEST(BuiltIns, HaveAnInstanceInTheStackOfThisTest) {
   Workshop workshop;
   const dsl::Stack stack = workshop.read(kStack);

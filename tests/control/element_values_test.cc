@@ -47,7 +47,7 @@ TEST(ParseValue, TakesNumbersWholeOrNotAtAll) {
   EXPECT_THAT(numbersOf(real, "-1.5e-3"), ElementsAre(-1.5e-3));
   EXPECT_THAT(numbersOf(real, ".5"), ElementsAre(0.5));
   EXPECT_EQ(errorOf(real, "1.5abc"), "'1.5abc' is not a number: expected a number");
-  EXPECT_EQ(errorOf(real, "0,5"), "'0,5' is not a number: expected a number");
+  EXPECT_EQ(errorOf(real, "0,5"), "'0,5' is not a number: expected a number; the decimal sign is a point");
   EXPECT_EQ(errorOf(real, ""), "'' is not a number: expected a number");
   EXPECT_EQ(errorOf(real, " 1"), "' 1' is not a number: expected a number");
   EXPECT_EQ(errorOf(real, "1 "), "'1 ' is not a number: expected a number");
@@ -55,6 +55,18 @@ TEST(ParseValue, TakesNumbersWholeOrNotAtAll) {
   EXPECT_EQ(errorOf(real, "nan"), "'nan' is not a finite number: expected a number");
   EXPECT_EQ(errorOf(real, "-inf"), "'-inf' is not a finite number: expected a number");
   EXPECT_EQ(errorOf(real, "1e999"), "'1e999' is too large or too small to be represented: expected a number");
+}
+
+TEST(ParseValue, SaysThatBlanksSeparateNumbers) {
+  const std::string hint = "; numbers are separated by blanks, not by commas";
+  const AttributeRow any{.name = "a", .type = ValueType::reals};
+  const AttributeRow three{.name = "a", .type = ValueType::reals, .count = 3};
+  const AttributeRow points{.name = "a", .type = ValueType::points, .count = 2};
+  EXPECT_EQ(errorOf(any, "1,2"), "'1,2' is not a number: expected a number" + hint);
+  EXPECT_EQ(errorOf(three, "1,2,3"), "expected 3 numbers, found 1" + hint);
+  EXPECT_EQ(errorOf(three, "1, 2, 3"), "'1,' is not a number: expected a number" + hint);
+  EXPECT_EQ(errorOf(points, "1 2; 3,4"), "point 2: expected 2 numbers, found 1" + hint);
+  EXPECT_EQ(errorOf(three, "1 2"), "expected 3 numbers, found 2");
 }
 
 TEST(ParseValue, IntegersAreWholeAndFit) {

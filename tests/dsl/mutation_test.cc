@@ -13,6 +13,7 @@
 #include "dsl/codes.h"
 #include "dsl/read_robot.h"
 #include "dsl/read_stack.h"
+#include "tests/dsl/placed.h"
 #include "tests/dsl/test_elements.h"
 
 namespace tactus::dsl_test {
@@ -98,21 +99,6 @@ class Mutator {
   std::mt19937 random_;
 };
 
-void expectPlaced(const dsl::InvalidStack& invalid, const std::string& mutant) {
-  ASSERT_FALSE(invalid.diagnostics.empty()) << mutant;
-  for (const auto& diagnostic : invalid.diagnostics) {
-    EXPECT_GE(diagnostic.place.line, 1) << diagnostic.message;
-    EXPECT_GE(diagnostic.place.column, 1) << diagnostic.message;
-    EXPECT_FALSE(diagnostic.place.file.empty());
-    EXPECT_FALSE(diagnostic.message.empty());
-    EXPECT_EQ(diagnostic.code.substr(0, 1), "E");
-    const long lines = std::count(mutant.begin(), mutant.end(), '\n') + 1;
-    if (diagnostic.place.file.ends_with("mutant.xml")) {
-      EXPECT_LE(diagnostic.place.line, lines);
-    }
-  }
-}
-
 TEST(Mutants, OfStacksAreReadOrRefusedAtAPlace) {
   control::Registry registry = makeRegistry();
   dsl::ReadOptions options = readOptions();
@@ -131,7 +117,7 @@ TEST(Mutants, OfStacksAreReadOrRefusedAtAPlace) {
         dsl::readStack(writeFile("resolved.xml", dsl::writeResolved(stack)), registry, options);
       } catch (const dsl::InvalidStack& invalid) {
         ++refused;
-        expectPlaced(invalid, mutant);
+        EXPECT_EQ(lackOf(invalid, file, mutant), "") << mutant;
       }
     }
   }
@@ -149,11 +135,12 @@ TEST(Mutants, OfAStackThatIsValidCompileOrAreRefused) {
   int compiled = 0;
   for (int i = 0; i < 500; ++i) {
     const std::string mutant = mutate(original);
+    const std::string file = writeFile("mutant.xml", mutant);
     try {
-      const dsl::Stack stack = dsl::readStack(writeFile("mutant.xml", mutant), registry, readOptions());
+      const dsl::Stack stack = dsl::readStack(file, registry, readOptions());
       compiled += dsl::compile(stack, registry) != nullptr;
     } catch (const dsl::InvalidStack& invalid) {
-      expectPlaced(invalid, mutant);
+      EXPECT_EQ(lackOf(invalid, file, mutant), "") << mutant;
     }
   }
   EXPECT_GT(compiled, 0);
@@ -161,20 +148,21 @@ TEST(Mutants, OfAStackThatIsValidCompileOrAreRefused) {
 
 TEST(Mutants, OfRobotsAreReadOrRefusedAtAPlace) {
   Mutator mutate(22);
-  for (const char* file : {"/models/lwr_4plus.urdf", "/tests/dsl/broken/coupled.urdf", "/tests/dsl/broken/ball.urdf"}) {
-    const std::string original = contentOf(std::string(TACTUS_SOURCE_DIR) + file);
+  for (const char* name : {"/models/lwr_4plus.urdf", "/tests/dsl/broken/coupled.urdf", "/tests/dsl/broken/ball.urdf"}) {
+    const std::string original = contentOf(std::string(TACTUS_SOURCE_DIR) + name);
     int refused = 0;
     for (int i = 0; i < 400; ++i) {
       const std::string mutant = mutate(original);
+      const std::string file = writeFile("mutant.urdf", mutant);
       std::vector<dsl::Diagnostic> warnings;
       try {
-        dsl::readRobot(writeFile("mutant.urdf", mutant), warnings);
+        dsl::readRobot(file, warnings);
       } catch (const dsl::InvalidStack& invalid) {
         ++refused;
-        expectPlaced(invalid, mutant);
+        EXPECT_EQ(lackOf(invalid, file, mutant), "") << mutant;
       }
     }
-    EXPECT_GT(refused, 100) << file;
+    EXPECT_GT(refused, 100) << name;
   }
 }
 

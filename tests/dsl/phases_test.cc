@@ -38,6 +38,12 @@ std::vector<std::string> errors(const std::string& text) {
   return found;
 }
 
+TEST(PhasesInAStack, WhatIsNotTrueOrFalseSwitchesNothing) {
+  EXPECT_THAT(errors(stackWith(machine, "do.time")),
+              ElementsAre(HasSubstr("E040 'do.time' is in s, but 'active' takes a number without unit")));
+  EXPECT_THAT(errors(stackWith(machine, "do.index")), IsEmpty());
+}
+
 TEST(PhasesInAStack, ATaskTakesPartInOnePhase) {
   control::Registry registry = makeRegistry();
   const dsl::Stack stack = dsl::readStack(writeFile("stack.xml", stackWith(machine, "do.sweep")), registry, readOptions());

@@ -588,7 +588,8 @@ TEST(ReadRobot, Numbers) {
   EXPECT_THAT(findings(changed("upper=\"1\"", "upper=\"nan\"")),
               ElementsAre("10:30 E014 attribute 'upper': 'nan' is not a finite number: expected a number"));
   EXPECT_THAT(findings(changed("upper=\"1\"", "upper=\"1,5\"")),
-              ElementsAre("10:30 E014 attribute 'upper': '1,5' is not a number: expected a number"));
+              ElementsAre("10:30 E014 attribute 'upper': '1,5' is not a number: expected a number; "
+                          "the decimal sign is a point"));
   EXPECT_THAT(findings(changed("xyz=\"0 0 1\"", "xyz=\"0 1\"")),
               ElementsAre("9:18 E014 attribute 'xyz': expected 3 numbers, found 2"));
   EXPECT_THAT(findings(changed("damping=\"0.5\"", "damping=\"-0.5\"")),

@@ -54,20 +54,25 @@ TEST(XmlScan, NotesTextButNotBlanksOrComments) {
 }
 
 TEST(XmlScan, SaysWhatIsNotWellFormedAndWhere) {
-  EXPECT_EQ(errorOf("<a><b></a>"), "6: </a> stands where </b> was expected");
+  EXPECT_EQ(errorOf("<a><b></a>"), "6: </a> stands where </b> was expected: <b> was opened in line 1, column 4");
   EXPECT_EQ(errorOf("<a><b/>"), "0: <a> is never closed");
   EXPECT_EQ(errorOf("<a/></a>"), "4: </a> closes nothing");
   EXPECT_EQ(errorOf("<a/><b/>"), "4: <b> is a second outermost element: a file has one");
   EXPECT_EQ(errorOf("<a b></a>"), "3: attribute 'b' has no '='");
   EXPECT_EQ(errorOf("<a b=1></a>"), "3: attribute 'b' has no value in quotes");
-  EXPECT_EQ(errorOf("<a b=\"1></a>"), "3: the value of attribute 'b' has no closing quote");
+  EXPECT_EQ(errorOf("<a b=\"1></a>"),
+            "3: the value of attribute 'b' has no closing quote: it was opened in line 1, column 6");
   EXPECT_EQ(errorOf("<a b='1' b='2'/>"), "9: attribute 'b' is given twice");
-  EXPECT_EQ(errorOf("<a b='1'c='2'/>"), "8: a blank was expected before the next attribute of <a>");
+  EXPECT_EQ(errorOf("<a b='1'c='2'/>"), "8: a blank was expected before the next attribute of <a>: the value of attribute "
+                                        "'b', opened in line 1, column 6, ends here");
+  EXPECT_EQ(errorOf("<a b=\"1 c=\"2\"/>"), "11: a blank was expected before the next attribute of <a>: the value of "
+                                          "attribute 'b', opened in line 1, column 6, ends here");
   EXPECT_EQ(errorOf("<a =''/>"), "3: the name of an attribute of <a> was expected");
   EXPECT_EQ(errorOf("<a b='x & y'/>"), "8: '&' starts no known entity: write '&amp;' for the character itself");
   EXPECT_EQ(errorOf("<a>&evil;</a>"), "3: '&' starts no known entity: write '&amp;' for the character itself");
   EXPECT_EQ(errorOf("<a b='x<y'/>"),
-            "7: '<' stands in the value of attribute 'b': write '&lt;', or close the quote before it");
+            "7: '<' stands in the value of attribute 'b', whose quote was opened in line 1, column 6: write '&lt;', or "
+            "close the quote before it");
   EXPECT_EQ(errorOf("<!DOCTYPE a><a/>"), "0: document type declarations are not allowed");
   EXPECT_EQ(errorOf("<a><!-- </a>"), "3: the comment is not closed by '-->'");
   EXPECT_EQ(errorOf("<a><![CDATA[ </a>"), "3: the CDATA section is not closed by ']]>'");

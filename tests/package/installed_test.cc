@@ -111,6 +111,12 @@ TEST_F(Installed, ProgramFindsItsOwnPluginsAndModels) {
   EXPECT_THAT(said.text, ::testing::Not(HasSubstr(TACTUS_BINARY_DIR)));
 }
 
+TEST_F(Installed, HasAManualPageForEachCommand) {
+  const Said said = shell("cd " + prefix() + "/share/man/man1 && gzip -dc tactus.1.gz tactus-golden-record.1.gz");
+  EXPECT_EQ(said.exit_code, 0) << said.text;
+  EXPECT_THAT(said.text, AllOf(HasSubstr(".TH TACTUS 1"), HasSubstr(".TH TACTUS-GOLDEN-RECORD 1")));
+}
+
 /// By the commands of the README that `new plugin` writes, as they stand there.  Its test gets the one of
 /// docs/plugins.md.
 TEST_F(Installed, ANewPluginIsBuiltTestedCheckedAndRun) {
