@@ -201,6 +201,7 @@ class Compiler {
                         whoCould([](const control::Abilities& a) { return a.limits_at_levels; }));
     auto levels = makeLevels(back_end ? &back_end->abilities() : nullptr);
     errors_.throwIfAny();
+    for (control::NamedSignal& signal : signals_) signal.readers = readers_[signal.name];
     try {
       return std::make_unique<control::Controller>(parts_.model(), std::move(signals_), std::move(levels),
                                                    std::move(back_end), parts_.period(), stack_.gravity,
@@ -256,6 +257,7 @@ class Compiler {
     std::vector<control::PortRow> rows;
     const control::PortRow& row = portRow(stack_, attribute, reference, type, rows);
     const ElementInstance& source = *stack_.source(reference.substr(0, reference.find('.')));
+    readers_[source.name].push_back(reader.name);
     const void* value = nullptr;
     if (source.values.row().kind == control::ElementKind::sensor) {
       value = readings_->port(source.name, row.name);
@@ -439,6 +441,7 @@ class Compiler {
   std::unique_ptr<control::Readings> readings_;
   std::map<std::string, State> states_;
   std::map<std::string, const control::Signal*> made_;
+  std::map<std::string, std::vector<std::string>> readers_;        // of each signal
   std::vector<control::NamedSignal> signals_;
 };
 

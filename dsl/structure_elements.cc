@@ -200,9 +200,9 @@ ElementRow controllerRow() {
                                          "in where there is none; then the robot's weight is borne.",
                           .lower = 0},
                          {.name = "on-fault", .type = ValueType::choice, .default_text = "fall-back",
-                          .description = "A task that throws, or gives numbers that are none: `fall-back` ends the run "
-                                         "or bears the weight instead, `switch-off` goes on without it, `end` ends the "
-                                         "run.",
+                          .description = "A task, signal or controller that throws, or a task whose numbers are none: "
+                                         "`fall-back` ends the run or bears the weight instead, `switch-off` goes on "
+                                         "without it and what reads it, `end` ends the run.",
                           .choices = {"fall-back", "switch-off", "end"}},
                          {.name = "deadline-iterations", .type = ValueType::integer, .unit = "1",
                           .description = "Iterations that the back end may take for a tick; not given: any number.",

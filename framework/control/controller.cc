@@ -1,5 +1,6 @@
 #include "framework/control/controller.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/control/element_values.h"
@@ -116,16 +117,27 @@ const Eigen::VectorXd& Controller::tick(const Sensed& raw) {
 void Controller::solveTick(const Sensed& sensed) {
   cache_.update(sensed.q, sensed.qd);
   const Tick now{sensed.time, period_, sensed, cache_};
-  for (const NamedSignal& named : signals_) {
-    guarded(TickError::Part::signal, now.time, [&] { named.signal->update(now); },
-            [&] { return "signal '" + named.name + "'"; });
-  }
+  updateSignals(now);
   assembleProblem(now);
   guarded(TickError::Part::back_end, now.time, [&] { back_end_->solve(problem_, solution_); }, [&] {
     const std::string& name = back_end_->recipe().back_end;
     return name.empty() ? "the back end" : "back end '" + name + "'";
   });
   chooseTorque();
+}
+
+void Controller::updateSignals(const Tick& tick) {
+  for (NamedSignal& named : signals_) {
+    if (named.switched_off) continue;
+    const auto name = [&] { return "signal '" + named.name + "'"; };
+    try {
+      guarded(TickError::Part::signal, tick.time, [&] { named.signal->update(tick); }, name);
+    } catch (const TickError& fault) {
+      if (options_.on_fault != OnFault::switch_off) throw;
+      named.switched_off = true;
+      switchOffReaders(tick, named, name() + ": " + fault.reason);
+    }
+  }
 }
 
 void Controller::bearWeight(const Sensed& sensed) {
@@ -210,10 +222,32 @@ void Controller::steer(const Tick& tick, std::size_t index) {
   try {
     guarded(TickError::Part::controller, tick.time, update, name);
   } catch (const TickError& fault) {
-    level.owner.switched_off = true;
+    switchOffOwner(tick, index, name() + ": " + fault.reason);
+  }
+}
+
+void Controller::switchOffOwner(const Tick& tick, std::size_t index, const std::string& reason) {
+  Level& level = levels_[index];
+  level.owner.switched_off = true;
+  for (std::size_t k = 0; k < level.tasks.size(); ++k)
+    if (!level.tasks[k].switched_off) switchOff(tick, level.tasks[k], problem_.levels[index].tasks[k], reason, true);
+}
+
+void Controller::switchOffReaders(const Tick& tick, const NamedSignal& signal, const std::string& reason) {
+  const auto reads = [&](const std::string& name) {
+    return std::find(signal.readers.begin(), signal.readers.end(), name) != signal.readers.end();
+  };
+  for (NamedSignal& other : signals_) {
+    if (other.switched_off || !reads(other.name)) continue;
+    other.switched_off = true;
+    switchOffReaders(tick, other, reason);
+  }
+  for (std::size_t i = 0; i < levels_.size(); ++i) {
+    Level& level = levels_[i];
+    if (level.owner.controller && !level.owner.switched_off && reads(level.owner.name)) switchOffOwner(tick, i, reason);
     for (std::size_t k = 0; k < level.tasks.size(); ++k)
-      if (!level.tasks[k].switched_off)
-        switchOff(tick, level.tasks[k], problem_.levels[index].tasks[k], name() + ": " + fault.reason, true);
+      if (!level.tasks[k].switched_off && reads(level.tasks[k].name))
+        switchOff(tick, level.tasks[k], problem_.levels[i].tasks[k], reason, true);
   }
 }
 

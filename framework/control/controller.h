@@ -23,6 +23,8 @@ namespace tactus::control {
 struct NamedSignal {
   std::string name;
   std::unique_ptr<Signal> signal;
+  std::vector<std::string> readers = {};                           ///< signals, tasks and controllers with a port of it
+  bool switched_off = false;                                       ///< its values stand as they were
 };
 struct NamedTask {
   std::string name;
@@ -59,7 +61,8 @@ struct ControllerOptions {
   OnFault on_fault = OnFault::fall_back;
 };
 
-/// A task that was switched off by OnFault::switch_off; all tasks of a controller go with it.
+/// A task that was switched off by OnFault::switch_off.  All tasks of a controller go with it, and with a signal all
+/// that reads it, directly or through others.
 struct SwitchedOff {
   std::string task;
   double time = 0;                                                 ///< s
@@ -161,10 +164,13 @@ class Controller {
 
   void solveTick(const Sensed& sensed);
   void bearWeight(const Sensed& sensed);
+  void updateSignals(const Tick& tick);
   void assembleProblem(const Tick& tick);
   void steer(const Tick& tick, std::size_t level);
   void fillRows(const Tick& tick, NamedTask& named, TickTask& rows);
   void switchOff(const Tick& tick, NamedTask& named, TickTask& rows, const std::string& reason, bool threw);
+  void switchOffReaders(const Tick& tick, const NamedSignal& signal, const std::string& reason);
+  void switchOffOwner(const Tick& tick, std::size_t level, const std::string& reason);
   /// The torque that is wanted, and whose it is.
   void chooseTorque();
   void applyTorque();

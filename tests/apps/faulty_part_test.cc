@@ -87,6 +87,24 @@ TEST(FaultyController, IsSwitchedOffWithItsTasksWhereTheStackSaysSo) {
             nlohmann::json({"task 'own.rest' was switched off at t = 0.02 s: controller 'own': lost the thread"}));
 }
 
+TEST(FaultySignal, EndsTheRunWithItsName) {
+  const Faulty faulty("<contacts ", "<naughty.signal name=\"idea\"/>");
+  EXPECT_EQ(faulty.outcome.exit_code, 4);
+  EXPECT_THAT(faulty.outcome.err, HasSubstr("signal 'idea' failed at t = 0.02 s: out of ideas"));
+}
+
+/// The posture reads the first through the second.
+TEST(FaultySignal, IsSwitchedOffWithWhatReadsItWhereTheStackSaysSo) {
+  const Faulty faulty("<controller ",
+                      "<signals><naughty.signal name=\"idea\"/><naughty.signal name=\"copy\" from=\"idea.value\"/></signals>"
+                      "<level priority=\"3\"><posture name=\"extra\" joints=\"tip\" active=\"copy.value\"/></level>",
+                      "switch-off");
+  EXPECT_EQ(faulty.outcome.exit_code, 4);
+  EXPECT_EQ(faulty.run["ticks"]["total"], 1000);
+  EXPECT_EQ(faulty.run["warnings"],
+            nlohmann::json({"task 'extra' was switched off at t = 0.02 s: signal 'idea': out of ideas"}));
+}
+
 TEST(FaultyParts, AreNamedByOtherCommandsToo) {
   const Faulty faulty("<signals>", sensor);
   const Outcome compared = tactus({"compare", faulty.stack, "--plugin", kPlugin, "--backends", "null-space"});

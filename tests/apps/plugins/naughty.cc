@@ -79,6 +79,12 @@ class Numb final : public Sensor {
   }
 };
 
+class Idea final : public Signal {
+  void doUpdate(const Tick& tick) override { failAt(tick.time, "out of ideas"); }
+  const void* doPort(std::string_view) const override { return &value_; }
+  double value_ = 1;
+};
+
 class Pencil final : public Observer {
  public:
   explicit Pencil(const RecorderContext& context) {
@@ -99,6 +105,13 @@ void registerParts(Registry& registry) {
     return row;
   };
   registry.addSensor(rowOf("sensor"), [](const SensorContext&) { return std::make_unique<Numb>(); });
+  ElementRow signal = rowOf("signal");
+  signal.attributes = {{.name = "from", .type = ValueType::port, .port_type = "scalar"}};
+  signal.ports = {{"value", "scalar", "1", "One.", 1}};
+  registry.addSignal(signal, [](const BuildContext& context) {
+    if (context.values.has("from")) context.port<double>("from");
+    return std::make_unique<Idea>();
+  });
   ElementRow recorder = rowOf("recorder");
   recorder.attributes = {{.name = "fault", .type = ValueType::choice, .default_text = "throw", .choices = {"throw", "disk"}}};
   registry.addRecorder(recorder, [](const RecorderContext& context) { return std::make_unique<Pencil>(context); });
