@@ -6,7 +6,7 @@
 
 #include "framework/control/sensed.h"
 #include "framework/description/scene.h"
-#include "sim/link_features.h"
+#include "sim/contact_surfaces.h"
 
 namespace tactus::sim {
 
@@ -36,29 +36,37 @@ struct BodyWrench {
   Eigen::Vector3d force_W = Eigen::Vector3d::Zero();
 };
 
-/// Compliant contact of link capsules with the primitives of a fixed scene.
+/// Compliant contact between the surfaces of bodies (see contact_surfaces.h).
 ///
-/// **Where.**  A capsule of axis a–b touches a convex primitive at up to three points: its two end spheres, and one
+/// **Where.**  A feature of axis a–b touches a convex shape at up to three points: its two end spheres, and one
 /// between them at p(t) = a + t (b − a).  Depth δ = r − d(p) with d the signed distance.  The interior point has the
 /// weight w = 4t(1−t), so that it fades into the ends, and stands where its elastic energy ½ k w δ² is greatest:
 /// this t is unique (w δ² is log-concave, as d is convex) and continuous in the pose, and by the envelope theorem
 /// the normal force k w δ at fixed t is the gradient of that energy, so that elastic contact conserves energy.
+/// Of a shape that is not convex the energy has several maxima, across the rim of a cup for one: up to three are found
+/// among 17 samples, the greatest first, and each but the greatest counts as far as it stands out: by the smoothstep of
+/// (E − E_saddle)/0.2 E, so that it comes and goes without a jump.
 ///
-/// **Normal** (Hunt and Crossley, 1975).  N = w β k δ (1 + c δ̇), clamped to [0, force_limit].
+/// **Normal** (Hunt and Crossley, 1975).  N = w β k δ (1 + c δ̇), clamped to [0, force_limit]; δ̇ is that of both bodies.
 ///
 /// **Friction** (elastic-plastic bristle; Dupont et al., IEEE TAC 2002).  Each point bends a tangential bristle z by
 /// its slip, ż = v_t, |σ₀ z| ≤ μN, and feels −(σ₀ z + σ₁ v_t), again at most μN.  A loaded bristle keeps its bend, so
-/// a held body does not creep.  The bends are the force's own state: `evaluate` proposes them, `commit` keeps them.
+/// a held body does not creep; it turns with the body of the shape.  The bends are the force's own state: `evaluate`
+/// proposes them, `commit` keeps them.
 ///
-/// **Unions.**  A point whose place on the surface lies inside another primitive, of any object, is buried: nothing
-/// can be felt there.  β falls smoothly (smoothstep) from 1 at the other's surface to 0 at `burial_fade` below it.
+/// **Unions.**  A point whose place on the surface lies inside another shape of the same body is buried: nothing can be
+/// felt there.  β falls smoothly (smoothstep) from 1 at the other's surface to 0 at `burial_fade` below it.  All that is
+/// fixed in the world is one body.
 ///
-/// Pairs are visited in the order (link, feature, object, primitive) and yield one record each in that order.
+/// Pairs are visited in their order and yield one record each in that order, as far as the robot is part of them.
 /// Bounding spheres sort out far pairs.  Nothing is allocated after construction.
 class ContactForce {
  public:
-  /// The features' bodies are numbered from 0 to `bodies` − 1.
-  ContactForce(const std::vector<LinkFeature>& features, const description::Scene& scene, int bodies,
+  /// Bodies are numbered from 0 to `bodies` − 1.
+  ContactForce(std::vector<Feature> features, std::vector<Collider> colliders, std::vector<SurfacePair> pairs, int bodies,
+               const ContactOptions& options = {});
+  /// Every feature against every shape of a scene that stays where it is.
+  ContactForce(const std::vector<Feature>& features, const description::Scene& scene, int bodies,
                const ContactOptions& options = {});
 
   /// Finds all touches of the bodies in this motion and their forces; bristles slip for h seconds.
@@ -68,51 +76,54 @@ class ContactForce {
 
   /// By body, of the last evaluation; zero for a body that touches nothing.
   const std::vector<BodyWrench>& wrenches() const { return wrenches_; }
-  /// One record per touching pair of the last evaluation; `records` is overwritten.
+  /// One record per pair of a link and something else that touched in the last evaluation; `records` is overwritten.
   void read(std::vector<control::ContactRecord>& records) const;
   /// The most records that there can be.
-  int capacity() const { return static_cast<int>(features_.size() * primitives_.size()); }
+  int capacity() const { return static_cast<int>(pairs_.size()); }
 
  private:
-  static constexpr int points_per_pair = 3;                        // from, to, interior
+  static constexpr int most_interior = 3;
+  static constexpr int points_per_pair = 2 + most_interior;        // from, to, interior ones
   using Bristles = Eigen::Matrix<double, 3, points_per_pair>;      // bends (m), world axes, one column a point
 
-  struct ScenePrimitive {
-    int object;
-    std::shared_ptr<const geometry::Shape> shape;
-    Eigen::Matrix3d R_WP;
-    Eigen::Vector3d p_WP;
-    double bounding_radius;
-    description::ContactMaterial material;
-    std::vector<int> overlapping;                                  // other primitives that can bury its surface
-  };
   struct Touch {
-    int feature;
-    int primitive;
+    int pair;
     double depth = 0;                                              // of the deepest point
     double weight_N = 0;                                           // Σ N, weighs the points
     Eigen::Vector3d weighted_point_W = Eigen::Vector3d::Zero();
     Eigen::Vector3d deepest_point_W = Eigen::Vector3d::Zero();
     Eigen::Vector3d deepest_normal_W = Eigen::Vector3d::Zero();
-    Eigen::Vector3d normal_force_W = Eigen::Vector3d::Zero();      // Σ, on the object
-    Eigen::Vector3d friction_force_W = Eigen::Vector3d::Zero();    // Σ, on the object
+    Eigen::Vector3d normal_force_W = Eigen::Vector3d::Zero();      // Σ, of the feature on the collider
+    Eigen::Vector3d friction_force_W = Eigen::Vector3d::Zero();    // Σ, of the feature on the collider
     Bristles bristles = Bristles::Zero();
+    Eigen::Matrix<double, most_interior, 1> places;                // t of interior points; NaN where there is none
   };
-  /// One contact point of a pair, in the primitive's frame.
+  /// Where a collider is and how it moves, in this evaluation.
+  struct Posed {
+    Eigen::Matrix3d R_WP;
+    Eigen::Vector3d p_WP;
+  };
+  /// One contact point of a pair, in the shape's frame.
   struct Point;
 
-  void touchPair(int feature, int primitive, const BodyMotion& body, double h);
-  void press(const Point& point, const ScenePrimitive& primitive, const BodyMotion& body, double h, int slot,
+  void pose(const std::vector<BodyMotion>& bodies);
+  void touchPair(int pair, const BodyMotion& of_feature, const BodyMotion& of_collider, double h);
+  int findInterior(const geometry::Shape& shape, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
+                   double depth_a, double depth_b, Point* points) const;
+  void assignSlots(int pair, int count, const Point* points, int* slots) const;
+  void press(const Point& point, int pair, const BodyMotion& of_feature, const BodyMotion& of_collider, double h, int slot,
              Touch& touch);
-  double exposure(const ScenePrimitive& primitive, const Eigen::Vector3d& surface_point_W) const;
-  int pairIndex(const Touch& touch) const {
-    return touch.feature * static_cast<int>(primitives_.size()) + touch.primitive;
-  }
+  double exposure(int collider, const Eigen::Vector3d& surface_point_W) const;
+  const BodyMotion& motionOf(int body, const std::vector<BodyMotion>& bodies) const;
 
   ContactOptions options_;
-  std::vector<LinkFeature> features_;
-  std::vector<ScenePrimitive> primitives_;
+  std::vector<Feature> features_;
+  std::vector<Collider> colliders_;
+  std::vector<SurfacePair> pairs_;
+  std::vector<std::vector<int>> burying_;                          // by collider: those of its body that may lie over it
+  std::vector<Posed> posed_;                                       // by collider
   std::vector<Bristles> bristles_;                                 // committed, by pair
+  std::vector<Eigen::Matrix<double, most_interior, 1>> places_;    // committed, by pair
   std::vector<int> bent_;                                          // pairs whose committed bristles are not zero
   std::vector<Touch> touches_;                                     // of the last evaluation
   std::vector<BodyWrench> wrenches_;                               // by body

@@ -1,5 +1,6 @@
 #include "sim/simbody_plant.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "sim/joint_resistance.h"
+#include "sim/object_path.h"
 #include "sim/simbody_robot.h"
 
 namespace tactus::sim {
@@ -33,13 +35,30 @@ const description::Robot& checkedJoints(const description::Robot& robot) {
   return robot;
 }
 
-/// The scene, when the plant can touch all its shapes.
-const description::Scene& checkedShapes(const description::Scene& scene) {
-  for (const description::Object& object : scene.objects)
-    for (const description::Primitive& primitive : object.primitives)
-      if (!primitive.shape->isConvex())
-        throw runtime::PlantError("object '" + object.name + "' has a shape that is not convex: make it a union of convex ones");
-  return scene;
+bool isForceMoved(const description::Object& object) {
+  return object.mobility == description::Mobility::free || object.mobility == description::Mobility::held;
+}
+
+/// The objects that forces move, in the order of the scene.
+std::vector<FreeBody> freeBodies(const description::Scene& scene) {
+  std::vector<FreeBody> bodies;
+  for (const description::Object& object : scene.objects) {
+    const auto refuse = [&](const std::string& why) { throw runtime::PlantError("object '" + object.name + "' " + why); };
+    if (object.mobility != description::Mobility::fixed)
+      for (const description::Primitive& primitive : object.primitives)
+        if (std::isinf(primitive.shape->boundingRadius())) refuse("has a shape without end: it cannot move");
+    if (!isForceMoved(object)) continue;
+    if (!(object.mass.mass > 0) || !std::isfinite(object.mass.mass)) refuse("moves, but has no mass");
+    bodies.push_back({object.name, object.mass, object.pose});
+  }
+  return bodies;
+}
+
+/// Of what touches what: Hunt–Crossley springs in series, the dissipation of the softer, the smaller friction.  What is
+/// fixed gives way as its own material says, as links do: they have none.
+description::ContactMaterial together(const description::ContactMaterial& a, const description::ContactMaterial& b) {
+  const double stiffness = a.stiffness * b.stiffness / (a.stiffness + b.stiffness);
+  return {stiffness, a.stiffness < b.stiffness ? a.dissipation : b.dissipation, std::min(a.friction, b.friction)};
 }
 
 constexpr const char* usual_causes =
@@ -54,16 +73,19 @@ class SimbodyPlant::Implementation {
                  const PlantOptions& options)
       : options_(options),
         names_(jointNames(robot)),
-        robot_(checkedJoints(robot), scene.gravity),
+        scene_(scene),
+        robot_(checkedJoints(robot), scene.gravity, freeBodies(scene)),
         state_(robot_.defaultState()),
-        contact_(movingFeatures(robot), checkedShapes(scene), robot_.matter().getNumBodies(), options.contact),
-        motions_(robot_.matter().getNumBodies()),
+        objects_(placeObjects()),
+        motions_(static_cast<size_t>(robot_.matter().getNumBodies() + movedObjects())),
+        contact_(makeContact(robot)),
         q_(checkedStart(robot, start_q)),
         qd_(Eigen::VectorXd::Zero(robot_.dof())),
         resistance_(robot, effectiveInertia(), options.step),
         joint_torque_(robot_.dof()),
-        mobility_forces_(robot_.dof(), 0.0),
-        accelerations_(robot_.dof(), 0.0) {
+        mobility_forces_(state_.getNU(), 0.0),
+        accelerations_(state_.getNU(), 0.0),
+        last_free_(free_) {
     sensed_.contacts.reserve(contact_.capacity());
     realize();
     contact_.evaluate(motions_, options_.step);
@@ -71,6 +93,7 @@ class SimbodyPlant::Implementation {
   }
 
   const control::Sensed& sense() const { return sensed_; }
+  const std::vector<ObjectMotion>& objects() const { return motions_of_objects_; }
 
   void advance(const Eigen::VectorXd& torque, double duration) {
     const double wanted = duration / options_.step;
@@ -100,18 +123,105 @@ class SimbodyPlant::Implementation {
     return names;
   }
 
+  /// An object's body, as contact numbers them: Simbody's, then those that follow a path, or `world_body`.
+  struct ObjectBody {
+    int body = world_body;
+    int free = -1;                                                 // index among those that forces move
+  };
+  /// What the plant integrates of a free body.
+  struct FreeState {
+    Eigen::Quaterniond rotation;
+    Eigen::Vector3d place, angular_W, linear_W;
+  };
+
+  int movedObjects() const {
+    int count = 0;
+    for (const description::Object& object : scene_.objects) count += object.mobility == description::Mobility::moved;
+    return count;
+  }
+
+  std::vector<ObjectBody> placeObjects() {
+    std::vector<ObjectBody> bodies;
+    int moved = robot_.matter().getNumBodies();
+    for (description::Object& object : scene_.objects) {
+      ObjectBody body;
+      if (object.path.empty()) object.path = {{0, object.pose}};
+      if (isForceMoved(object)) {
+        body.free = static_cast<int>(free_.size());
+        body.body = robot_.freeBody(body.free);
+        free_.push_back({Eigen::Quaterniond(object.pose.linear()), object.pose.translation(), Eigen::Vector3d::Zero(),
+                         Eigen::Vector3d::Zero()});
+      } else if (object.mobility == description::Mobility::moved) {
+        body.body = moved++;
+      }
+      bodies.push_back(body);
+    }
+    motions_of_objects_.resize(bodies.size());
+    return bodies;
+  }
+
   /// The features of links that can move, each in the frame of its mobilized body.  What is fixed to the world
   /// cannot be pushed: it touches nothing.
-  std::vector<LinkFeature> movingFeatures(const description::Robot& robot) const {
-    std::vector<LinkFeature> features = linkFeatures(robot);
-    for (LinkFeature& feature : features) {
-      const Eigen::Isometry3d& X_BL = robot_.poseInCarrier(feature.link);
-      feature.body = robot_.carrier(feature.link).getMobilizedBodyIndex();
-      feature.from = X_BL * feature.from;
-      feature.to = X_BL * feature.to;
+  std::vector<Feature> movingFeatures(const description::Robot& robot) const {
+    std::vector<Feature> features = linkFeatures(robot);
+    for (Feature& feature : features) {
+      const Eigen::Isometry3d& X_BL = robot_.poseInCarrier(feature.owner.link);
+      feature.body = robot_.carrier(feature.owner.link).getMobilizedBodyIndex();
+      feature.feeler.from = X_BL * feature.feeler.from;
+      feature.feeler.to = X_BL * feature.feeler.to;
     }
-    std::erase_if(features, [](const LinkFeature& feature) { return feature.body == 0; });
+    std::erase_if(features, [](const Feature& feature) { return feature.body == 0; });
     return features;
+  }
+
+  /// Links feel all objects.  Objects of which one moves feel each other: one whose feelers are all round feels for both,
+  /// else each for itself.
+  ContactForce makeContact(const description::Robot& robot) const {
+    std::vector<Feature> features = movingFeatures(robot);
+    std::vector<Collider> colliders;
+    for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
+      for (Collider& collider : objectColliders(scene_.objects[i], i)) {
+        collider.body = objects_[i].body;
+        if (collider.body == world_body) collider.pose = scene_.objects[i].pose * collider.pose;
+        colliders.push_back(std::move(collider));
+      }
+    std::vector<SurfacePair> pairs;
+    for (int f = 0; f < static_cast<int>(features.size()); ++f)
+      for (int c = 0; c < static_cast<int>(colliders.size()); ++c)
+        pairs.push_back({f, c, scene_.objects[colliders[c].owner.object].material});
+    addObjectPairs(features, colliders, pairs);
+    return ContactForce(std::move(features), std::move(colliders), std::move(pairs),
+                        static_cast<int>(motions_.size()), options_.contact);
+  }
+
+  void addObjectPairs(std::vector<Feature>& features, const std::vector<Collider>& colliders,
+                      std::vector<SurfacePair>& pairs) const {
+    const int objects = static_cast<int>(scene_.objects.size());
+    const bool none_moves = std::all_of(scene_.objects.begin(), scene_.objects.end(),
+                                        [](const auto& object) { return !isForceMoved(object); });
+    if (none_moves) return;
+    std::vector<int> first(objects);
+    std::vector<bool> round(objects, true);
+    for (int i = 0; i < objects; ++i) {
+      first[i] = static_cast<int>(features.size());
+      for (Feature& feature : objectFeatures(scene_.objects[i], i)) {
+        feature.body = objects_[i].body;
+        if (feature.body == world_body) {
+          feature.feeler.from = scene_.objects[i].pose * feature.feeler.from;
+          feature.feeler.to = scene_.objects[i].pose * feature.feeler.to;
+        }
+        round[i] = round[i] && feature.feeler.radius > 0;
+        features.push_back(feature);
+      }
+      round[i] = round[i] && first[i] < static_cast<int>(features.size());
+    }
+    for (int f = first.front(); f < static_cast<int>(features.size()); ++f)
+      for (int c = 0; c < static_cast<int>(colliders.size()); ++c) {
+        const int a = features[f].owner.object, b = colliders[c].owner.object;
+        if (a == b || !(isForceMoved(scene_.objects[a]) || isForceMoved(scene_.objects[b]))) continue;
+        if (round[b] && (!round[a] || b < a)) continue;            // b feels for both
+        pairs.push_back({f, c, together(scene_.objects[a].material, scene_.objects[b].material)});
+      }
   }
 
   Eigen::VectorXd checkedStart(const description::Robot& robot, const Eigen::VectorXd& start_q) const {
@@ -159,15 +269,31 @@ class SimbodyPlant::Implementation {
     return std::round(static_cast<double>(steps) * options_.step * 1e9) / 1e9;
   }
 
+  /// Writes what the plant integrates into Simbody's state.
+  void setState() {
+    auto q = toEigen(state_.updQ());
+    auto u = toEigen(state_.updU());
+    const Eigen::Index dof = robot_.dof();
+    q.head(dof) = q_;
+    u.head(dof) = qd_;
+    for (size_t i = 0; i < free_.size(); ++i) {
+      const FreeState& body = free_[i];
+      const Eigen::Index at = static_cast<Eigen::Index>(i);
+      q.segment<4>(dof + 7 * at) << body.rotation.w(), body.rotation.x(), body.rotation.y(), body.rotation.z();
+      q.segment<3>(dof + 7 * at + 4) = body.place;
+      u.segment<3>(dof + 6 * at) = body.angular_W;
+      u.segment<3>(dof + 6 * at + 3) = body.linear_W;
+    }
+  }
+
   void realizePosition() {
-    toEigen(state_.updQ()) = q_;
+    setState();
     robot_.system().realize(state_, SimTK::Stage::Position);
   }
 
   /// Brings Simbody and the body motions to (q_, qd_).
   void realize() {
-    toEigen(state_.updQ()) = q_;
-    toEigen(state_.updU()) = qd_;
+    setState();
     robot_.system().realize(state_, SimTK::Stage::Dynamics);
     for (SimTK::MobilizedBodyIndex b(1); b < robot_.matter().getNumBodies(); ++b) {
       const SimTK::MobilizedBody& body = robot_.matter().getMobilizedBody(b);
@@ -175,26 +301,52 @@ class SimbodyPlant::Implementation {
       const SimTK::SpatialVec& V_WB = body.getBodyVelocity(state_);
       motions_[b] = {toEigen(X_WB.R()), toEigen(X_WB.p()), toEigen(V_WB[0]), toEigen(V_WB[1])};
     }
+    for (size_t i = 0; i < objects_.size(); ++i)
+      if (scene_.objects[i].mobility == description::Mobility::moved)
+        motions_[objects_[i].body] = motionOn(scene_.objects[i].path, time());
+  }
+
+  /// Spring and damper from a held object to where its path is, at the object's origin.
+  BodyWrench holdingWrench(size_t object) const {
+    const BodyMotion& is = motions_[objects_[object].body];
+    const BodyMotion wanted = motionOn(scene_.objects[object].path, time());
+    const description::Holder& holder = scene_.objects[object].holder;
+    const Eigen::AngleAxisd turn(wanted.R_WB * is.R_WB.transpose());
+    BodyWrench wrench;
+    wrench.force_W = holder.stiffness * (wanted.p_WB - is.p_WB) + holder.damping * (wanted.linear_W - is.linear_W);
+    wrench.torque_W = holder.rotation_stiffness * turn.angle() * turn.axis() +
+                      holder.rotation_damping * (wanted.angular_W - is.angular_W);
+    return wrench;
   }
 
   void step(const Eigen::VectorXd& torque) {
     joint_torque_ = torque;
     resistance_.add(q_, qd_, joint_torque_);
-    toEigen(mobility_forces_) = joint_torque_;
+    toEigen(mobility_forces_).head(robot_.dof()) = joint_torque_;
     robot_.gravityForces(state_, body_forces_);
     for (SimTK::MobilizedBodyIndex b(1); b < body_forces_.size(); ++b) {
       const BodyWrench& wrench = contact_.wrenches()[b];
       body_forces_[b] += SimTK::SpatialVec(toSimTK(wrench.torque_W), toSimTK(wrench.force_W));
     }
+    for (size_t i = 0; i < objects_.size(); ++i) {
+      if (scene_.objects[i].mobility != description::Mobility::held) continue;
+      const BodyWrench wrench = holdingWrench(i);
+      body_forces_[SimTK::MobilizedBodyIndex(objects_[i].body)] +=
+          SimTK::SpatialVec(toSimTK(wrench.torque_W), toSimTK(wrench.force_W));
+    }
 
     last_q_ = q_;
     last_qd_ = qd_;
+    last_free_ = free_;
+    last_steps_ = steps_;
     try {
       robot_.matter().calcAccelerationIgnoringConstraints(state_, mobility_forces_, body_forces_, accelerations_,
                                                           body_accelerations_);
-      qd_ += options_.step * toEigen(accelerations_);
+      qd_ += options_.step * toEigen(accelerations_).head(robot_.dof());
       q_ += options_.step * qd_;
+      stepFreeBodies();
       checkSpeed();
+      ++steps_;
       realize();
     } catch (const runtime::PlantError&) {
       takeBack();
@@ -204,15 +356,31 @@ class SimbodyPlant::Implementation {
       throw runtime::PlantError("Simbody failed at t = " + print(roundedTime(steps_)) + " s: " + error.getMessage() +
                                 ". " + usual_causes);
     }
-    ++steps_;
     contact_.commit();
     resistance_.commit();
     contact_.evaluate(motions_, options_.step);
   }
 
+  void stepFreeBodies() {
+    const auto acceleration = toEigen(accelerations_);
+    for (size_t i = 0; i < free_.size(); ++i) {
+      FreeState& body = free_[i];
+      const Eigen::Index at = robot_.dof() + 6 * static_cast<Eigen::Index>(i);
+      body.angular_W += options_.step * acceleration.segment<3>(at);
+      body.linear_W += options_.step * acceleration.segment<3>(at + 3);
+      body.place += options_.step * body.linear_W;
+      const double angle = options_.step * body.angular_W.norm();
+      if (angle > 0)
+        body.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(angle, body.angular_W.normalized())) * body.rotation;
+      body.rotation.normalize();
+    }
+  }
+
   void takeBack() {
     q_ = last_q_;
     qd_ = last_qd_;
+    free_ = last_free_;
+    steps_ = last_steps_;
     realize();
   }
 
@@ -221,6 +389,14 @@ class SimbodyPlant::Implementation {
       if (!std::isfinite(qd_[i]))
         throw runtime::PlantError("joint '" + names_[i].name + "' is lost: its speed is " + print(qd_[i]) + " at t = " +
                                   print(roundedTime(steps_ + 1)) + " s. " + usual_causes);
+    for (size_t i = 0; i < objects_.size(); ++i) {
+      if (objects_[i].free < 0) continue;
+      const FreeState& body = free_[static_cast<size_t>(objects_[i].free)];
+      if (body.linear_W.norm() <= options_.velocity_limit && body.angular_W.norm() <= 100 * options_.velocity_limit) continue;
+      throw runtime::PlantError("object '" + scene_.objects[i].name + "' runs away: its speed reaches " +
+                                print(body.linear_W.norm()) + " m/s and " + print(body.angular_W.norm()) +
+                                " rad/s at t = " + print(roundedTime(steps_ + 1)) + " s. " + usual_causes);
+    }
     int fastest = 0;
     if (robot_.dof() == 0 || qd_.cwiseAbs().maxCoeff(&fastest) <= options_.velocity_limit) return;
     throw runtime::PlantError("joint '" + names_[fastest].name + "' runs away: its speed reaches " +
@@ -234,20 +410,35 @@ class SimbodyPlant::Implementation {
     sensed_.q = q_;
     sensed_.qd = qd_;
     contact_.read(sensed_.contacts);
+    for (size_t i = 0; i < objects_.size(); ++i) {
+      ObjectMotion& motion = motions_of_objects_[i];
+      motion.pose = scene_.objects[i].pose;
+      if (objects_[i].body == world_body) continue;
+      const BodyMotion& body = motions_[objects_[i].body];
+      motion.pose.linear() = body.R_WB;
+      motion.pose.translation() = body.p_WB;
+      motion.angular_W = body.angular_W;
+      motion.linear_W = body.linear_W;
+    }
   }
 
   PlantOptions options_;
   std::vector<JointName> names_;
+  description::Scene scene_;
   SimbodyRobot robot_;
   SimTK::State state_;
+  std::vector<FreeState> free_;                                    // by index among those that forces move
+  std::vector<ObjectMotion> motions_of_objects_;
+  std::vector<ObjectBody> objects_;
+  std::vector<BodyMotion> motions_;       // by mobilized body; 0 is Ground, which rests; then objects that follow a path
   ContactForce contact_;
-  std::vector<BodyMotion> motions_;                                // by mobilized body; 0 is Ground, which rests
   Eigen::VectorXd q_, qd_;
   JointResistance resistance_;
   Eigen::VectorXd joint_torque_, last_q_, last_qd_;
   SimTK::Vector mobility_forces_, accelerations_;
   SimTK::Vector_<SimTK::SpatialVec> body_forces_, body_accelerations_;
-  std::int64_t steps_ = 0;
+  std::vector<FreeState> last_free_;
+  std::int64_t steps_ = 0, last_steps_ = 0;
   control::Sensed sensed_;
 };
 
@@ -263,6 +454,8 @@ SimbodyPlant::SimbodyPlant(const description::Robot& robot, const description::S
 SimbodyPlant::~SimbodyPlant() = default;
 
 const control::Sensed& SimbodyPlant::sense() const { return implementation_->sense(); }
+
+const std::vector<ObjectMotion>& SimbodyPlant::objects() const { return implementation_->objects(); }
 
 void SimbodyPlant::advance(const Eigen::VectorXd& torque, double duration) {
   implementation_->advance(torque, duration);

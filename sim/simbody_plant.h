@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
@@ -10,21 +11,29 @@
 
 namespace tactus::sim {
 
+/// How an object moves, in the order of the scene.
+struct ObjectMotion {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< object frame in W
+  Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();             ///< rad/s
+  Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();              ///< m/s, of the frame's origin
+};
+
 struct PlantOptions {
   double step = 0.25e-3;                                           ///< s, semi-explicit Euler
-  double velocity_limit = 100;                                     ///< rad/s or m/s; beyond it the state is a runaway
+  double velocity_limit = 100;                ///< rad/s or m/s, of joints and places; beyond it the state is a runaway
   ContactOptions contact;
 };
 
-/// The robot in its scene, simulated by Simbody (tree, gravity, forward dynamics) with Tactus's own contact force (see
-/// contact_force.h) and joint damping, friction and stops (see joint_resistance.h).  Semi-explicit Euler at a fixed
+/// The robot in its scene, simulated by Simbody (tree, free bodies, gravity, forward dynamics) with Tactus's own contact
+/// force (see contact_force.h) and joint damping, friction and stops (see joint_resistance.h).  Links touch all objects;
+/// objects that move touch all others.  Semi-explicit Euler at a fixed
 /// step h: q̇ ← q̇ + h q̈(q, q̇, τ), q ← q + h q̇; time is a step count times h.  The same inputs give the same bits.
 /// Built from the description alone: nothing of framework/dynamics is used.
 class SimbodyPlant final : public runtime::Plant {
  public:
   /// Throws runtime::PlantError when the robot has joints of several degrees of freedom or driven by others, or moving
   /// links without mass, when Simbody refuses it, or the start has the wrong size, is not finite or lies outside the
-  /// joint limits.
+  /// joint limits; when an object that forces move has no mass, or one without end does not stay where it is.
   SimbodyPlant(const description::Robot& robot, const description::Scene& scene, const Eigen::VectorXd& start_q,
                const PlantOptions& options = {});
   ~SimbodyPlant() override;
@@ -33,6 +42,8 @@ class SimbodyPlant final : public runtime::Plant {
   /// `duration` is a whole number of steps.  A step whose result is not finite or beyond the velocity limit is not
   /// taken: PlantError says joint, value and time, and `sense` shows the last good step.
   void advance(const Eigen::VectorXd& torque, double duration) override;
+  /// Now, of every object of the scene.
+  const std::vector<ObjectMotion>& objects() const;
 
  private:
   class Implementation;

@@ -96,10 +96,12 @@ SimTK::MobilizedBodyIndex addBody(JointType type, SimTK::MobilizedBody& parent, 
 
 }  // namespace
 
-SimbodyRobot::SimbodyRobot(const Robot& robot, const Eigen::Vector3d& gravity_W) : matter_(system_) {
+SimbodyRobot::SimbodyRobot(const Robot& robot, const Eigen::Vector3d& gravity_W, const std::vector<FreeBody>& free_bodies)
+    : matter_(system_) {
   matter_.setShowDefaultGeometry(false);
   try {
     build(robot, gravity_W);
+    for (const FreeBody& body : free_bodies) addFreeBody(body, gravity_W);
     system_.realizeTopology();
   } catch (const SimTK::Exception::Base& error) {
     throw runtime::PlantError("Simbody refuses robot '" + robot.name + "': " + error.getMessage());
@@ -138,6 +140,20 @@ void SimbodyRobot::build(const Robot& robot, const Eigen::Vector3d& gravity_W) {
     const std::vector<int>& below = joints_below[joint.child];
     pending.insert(pending.end(), below.rbegin(), below.rend());
   }
+}
+
+void SimbodyRobot::addFreeBody(const FreeBody& body, const Eigen::Vector3d& gravity_W) {
+  MergedMass mass;
+  mass.mass = body.mass.mass;
+  mass.moment = body.mass.mass * body.mass.centre;
+  const Eigen::Vector3d& c = body.mass.centre;
+  mass.inertia = body.mass.inertia +
+                 body.mass.mass * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
+  const SimTK::MobilizedBodyIndex index = addBody(JointType::floating, matter_.updGround(), SimTK::Transform(),
+                                                  SimTK::Body::Rigid(toSimTK(mass)));
+  free_bodies_.push_back(index);
+  bodies_.push_back(index);
+  weights_.push_back({sim::toSimTK(c), sim::toSimTK(Eigen::Vector3d(mass.mass * gravity_W))});
 }
 
 void SimbodyRobot::gravityForces(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& forces) const {

@@ -6,10 +6,11 @@
 /// What the robot feels at one instant: plain data from the plant to the controller.
 namespace tactus::control {
 
-/// One touch of a link feature (a capsule) on one primitive of an object.
+/// One touch of a link feature (a capsule) on one primitive of an object, or of another link.
 struct ContactRecord {
   int link = -1;                                                   ///< index into description::Robot::links
-  int object = -1;                                                 ///< index into description::Scene::objects
+  int object = -1;                                                 ///< index into description::Scene::objects, or −1
+  int other_link = -1;                                             ///< where the robot touches itself, else −1
   Eigen::Vector3d point_W = Eigen::Vector3d::Zero();               ///< m
   Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();              ///< unit, out of the robot into the object
   double depth = 0;                                                ///< m, > 0 while overlapping

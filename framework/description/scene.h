@@ -23,13 +23,46 @@ struct ContactMaterial {
   double friction = 0.2;                                           ///< Coulomb coefficient μ
 };
 
-/// A fixed object: the union of its primitives.
+/// What decides where an object is.
+enum class Mobility {
+  fixed,                                                           ///< it stays at its pose
+  free,                                                            ///< the forces on it
+  held,                                                            ///< these, and a spring and damper to its path
+  moved                                                            ///< its path alone, whatever touches it
+};
+
+/// Where an object, or what holds it, is to be at a time.
+struct Waypoint {
+  double time = 0;                                                 ///< s
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< object frame in W
+};
+
+/// Of what holds an object; each about all axes alike.
+struct Holder {
+  double stiffness = 500;                                          ///< N/m
+  double damping = 15;                                             ///< N s/m
+  double rotation_stiffness = 2;                                   ///< N m/rad
+  double rotation_damping = 0.02;                                  ///< N m s/rad
+};
+
+/// Of an object that forces move, in its own frame.
+struct MassProperties {
+  double mass = 0;                                                 ///< kg
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();                ///< m
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();               ///< kg m², about the centre
+};
+
+/// The union of its primitives.
 struct Object {
   std::string name;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< object frame in W, jitter already drawn
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< object frame in W at time 0, jitter already drawn
   std::vector<Primitive> primitives;
   ContactMaterial material;
   Place place;
+  Mobility mobility = Mobility::fixed;
+  MassProperties mass;                                             ///< of free and held ones
+  Holder holder;                                                   ///< of held ones
+  std::vector<Waypoint> path;                                      ///< of held and moved ones, times rising; empty: its pose
 };
 
 struct Scene {

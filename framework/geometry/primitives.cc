@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -17,6 +18,9 @@ constexpr double level = 1e-9;
 
 /// Sign of a component of a direction, 0 where it is level.
 double side(double component) { return std::abs(component) < level ? 0 : std::copysign(1.0, component); }
+
+/// How far out the points inside a flat face lie, of the way to its border.
+constexpr double inner = 0.6;
 
 double positive(const char* what, double length) {
   if (!(length > 0) || !std::isfinite(length)) throw std::invalid_argument(std::string(what) + " is finite and > 0");
@@ -60,11 +64,40 @@ SignedDistance Box::doDistance(const Vector3d& p) const {
 
 std::optional<Vector3d> Box::doSupport(const Vector3d& n) const { return n.unaryExpr(&side).cwiseProduct(size_ / 2); }
 
+std::vector<Feeler> Box::doFeelers() const {
+  const Vector3d half = size_ / 2;
+  std::vector<Feeler> feelers;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d side(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    feelers.push_back({half.cwiseProduct(side), half.cwiseProduct(side)});
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    for (int edge = 0; edge < 4; ++edge) {
+      Vector3d from = half;
+      if (edge & 1) from[(axis + 1) % 3] *= -1;
+      if (edge & 2) from[(axis + 2) % 3] *= -1;
+      Vector3d to = from;
+      to[axis] *= -1;
+      feelers.push_back({from, to, 0, false});
+    }
+  for (int axis = 0; axis < 3; ++axis)
+    for (int point = 0; point < 8; ++point) {
+      Vector3d inside = inner * half;
+      inside[axis] = half[axis];
+      for (int i = 0; i < 3; ++i)
+        if (point >> i & 1) inside[i] *= -1;
+      feelers.push_back({inside, inside});
+    }
+  return feelers;
+}
+
 Sphere::Sphere(double radius) : Shape(positive("the radius of a sphere", radius), true) {}
 
 SignedDistance Sphere::doDistance(const Vector3d& p) const { return fromCentre(p, radius(), Vector3d::UnitZ()); }
 
 std::optional<Vector3d> Sphere::doSupport(const Vector3d& n) const { return radius() * n; }
+
+std::vector<Feeler> Sphere::doFeelers() const { return {{Vector3d::Zero(), Vector3d::Zero(), radius()}}; }
 
 Cylinder::Cylinder(double radius, double length)
     : Shape(std::hypot(positive("the radius of a cylinder", radius), 0.5 * positive("the length of a cylinder", length)),
@@ -93,6 +126,21 @@ std::optional<Vector3d> Cylinder::doSupport(const Vector3d& n) const {
   return point;
 }
 
+std::vector<Feeler> Cylinder::doFeelers() const {
+  constexpr int count = 24;
+  std::vector<Feeler> feelers;
+  for (const double z : {-length_ / 2, length_ / 2})
+    for (int i = 0; i < count; ++i) {
+      const double angle = 2 * std::numbers::pi * i / count;
+      const Vector3d point(radius_ * std::cos(angle), radius_ * std::sin(angle), z);
+      feelers.push_back({point, point, 0, true, 1.0 / 3});
+      if (i % 4 != 0) continue;
+      const Vector3d inside(inner * point.x(), inner * point.y(), z);
+      feelers.push_back({inside, inside, 0, true, 1.0 / 3});
+    }
+  return feelers;
+}
+
 Capsule::Capsule(double radius, double length)
     : Shape(positive("the radius of a capsule", radius) + 0.5 * positive("the length of a capsule", length), true),
       radius_(radius),
@@ -106,6 +154,11 @@ SignedDistance Capsule::doDistance(const Vector3d& p) const {
 
 std::optional<Vector3d> Capsule::doSupport(const Vector3d& n) const {
   return Vector3d(Vector3d(0, 0, side(n.z()) * length_ / 2) + radius_ * n);
+}
+
+std::vector<Feeler> Capsule::doFeelers() const {
+  const Vector3d half(0, 0, length_ / 2);
+  return {{-half, half, radius_}};
 }
 
 }  // namespace tactus::geometry

@@ -1,6 +1,8 @@
 #include "framework/geometry/shape.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace tactus::geometry {
@@ -17,6 +19,25 @@ std::optional<Eigen::Vector3d> Shape::doSupport(const Eigen::Vector3d& n) const 
   const Eigen::Vector3d p = far * bounding_radius_ * n;
   const SignedDistance nearest = distance(p);
   return p - nearest.distance * nearest.gradient;
+}
+
+std::vector<Feeler> Shape::doFeelers() const {
+  constexpr int count = 120;
+  std::vector<Feeler> feelers;
+  if (std::isinf(bounding_radius_)) return feelers;
+  for (int i = 0; i < count; ++i) {                                // Fibonacci's spiral
+    const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
+    const double z = 1 - (2 * i + 1.0) / count, rho = std::sqrt(1 - z * z);
+    const Eigen::Vector3d n(rho * std::cos(i * turn), rho * std::sin(i * turn), z);
+    const SignedDistance nearest = distance(bounding_radius_ * n);
+    const Eigen::Vector3d point =
+        convex_ ? *support(n) : Eigen::Vector3d(bounding_radius_ * n - nearest.distance * nearest.gradient);
+    const bool is_new = std::none_of(feelers.begin(), feelers.end(), [&](const Feeler& other) {
+      return (other.from - point).norm() < 1e-3 * bounding_radius_;
+    });
+    if (is_new) feelers.push_back({point, point, 0, true, 0.125});
+  }
+  return feelers;
 }
 
 }  // namespace tactus::geometry

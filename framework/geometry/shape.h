@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 /// What objects are made of: shapes as signed distances, for the plant, for estimators, for anybody who asks where a
 /// surface is.
@@ -10,6 +11,16 @@ namespace tactus::geometry {
 struct SignedDistance {
   double distance = 0;                                             ///< m, negative inside
   Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();             ///< unit, outward normal at the nearest surface point
+};
+
+/// A stretch of a shape's surface with which it feels for others: the points within `radius` of the segment from–to.
+/// `from == to` is a sphere, radius 0 an edge or a corner.
+struct Feeler {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();                  ///< m
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  double radius = 0;                                               ///< m
+  bool ends = true;                                                ///< false: its ends are others' (edges of a box)
+  double share = 1;                                                ///< of the stiffness, where several touch as one
 };
 
 /// A solid in a frame of its own, told by the signed distance to its surface: Euclidean outside and inside, so that
@@ -27,6 +38,9 @@ class Shape {
   /// A point of the shape that lies farthest along the unit vector n; none where the shape has no end there.
   std::optional<Eigen::Vector3d> support(const Eigen::Vector3d& n) const { return doSupport(n); }
 
+  /// With what it touches where it moves; none of a shape without end.
+  std::vector<Feeler> feelers() const { return doFeelers(); }
+
   /// Radius of a sphere about the shape's origin that holds all of it, m; infinite for one without end.
   double boundingRadius() const { return bounding_radius_; }
   /// Whether the segment between any two of its points lies inside: the distance is then a convex function of p.
@@ -42,6 +56,10 @@ class Shape {
   virtual SignedDistance doDistance(const Eigen::Vector3d& p) const = 0;
   /// As it stands: what is nearest to a point far out along n, right to 1e-7 of the bounding radius.
   virtual std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const;
+
+  /// As it stands: up to 120 points of the surface with an eighth of the stiffness each, of a convex shape those
+  /// farthest in directions spread evenly over the sphere, of another those nearest to points around it.
+  virtual std::vector<Feeler> doFeelers() const;
 
   double bounding_radius_;
   bool convex_;

@@ -21,8 +21,8 @@ using sim_tests::object;
 
 constexpr double h = 0.25e-3;
 
-LinkFeature feature(const description::CapsuleShape& shape, int body = 0) {
-  return {body, body, shape.from, shape.to, shape.radius};
+Feature feature(const description::CapsuleShape& shape, int body = 0) {
+  return {{body, -1}, body, {shape.from, shape.to, shape.radius}};
 }
 
 std::vector<control::ContactRecord> read(const ContactForce& contact) {
@@ -295,7 +295,7 @@ TEST(ContactForce, AllocatesNothing) {
                    object("ball", at(0.02, 0, 0), std::make_shared<geometry::Sphere>(0.03)),
                    object("can", at(-0.02, 0, 0), std::make_shared<geometry::Cylinder>(0.03, 0.05)),
                    object("pill", at(0, 0.02, 0), std::make_shared<geometry::Capsule>(0.02, 0.05))};
-  std::vector<LinkFeature> features;
+  std::vector<Feature> features;
   std::vector<BodyMotion> motions(10);
   for (int i = 0; i < 10; ++i) features.push_back(feature(sim_tests::capsule(0.012, 0.03), i));
   ContactForce contact(features, scene, 10);

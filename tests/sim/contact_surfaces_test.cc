@@ -1,4 +1,4 @@
-#include "sim/link_features.h"
+#include "sim/contact_surfaces.h"
 
 #include <gtest/gtest.h>
 
@@ -14,13 +14,13 @@ TEST(LinkFeatures, KeepCapsulesInOrderOfLinksAndShapes) {
   sim_tests::addJoint(robot, "a", description::JointType::revolute, Eigen::Vector3d::UnitZ());
   robot.links[1].shapes = {sim_tests::sphere(0.01), sim_tests::capsule(0.02, 0.1)};
   robot.links[0].shapes = {sim_tests::sphere(0.03)};
-  const std::vector<LinkFeature> features = linkFeatures(robot);
+  const std::vector<Feature> features = linkFeatures(robot);
   ASSERT_EQ(features.size(), 3u);
-  EXPECT_EQ(features[0].link, 0);
-  EXPECT_EQ(features[1].link, 1);
-  EXPECT_EQ(features[2].link, 1);
-  EXPECT_EQ(features[2].radius, 0.02);
-  EXPECT_EQ(features[2].from, Eigen::Vector3d(-0.05, 0, 0));
+  EXPECT_EQ(features[0].owner.link, 0);
+  EXPECT_EQ(features[1].owner.link, 1);
+  EXPECT_EQ(features[2].owner.link, 1);
+  EXPECT_EQ(features[2].feeler.radius, 0.02);
+  EXPECT_EQ(features[2].feeler.from, Eigen::Vector3d(-0.05, 0, 0));
 }
 
 TEST(LinkFeatures, RowOfCapsulesSharesTheBoxsOuterFaces) {
@@ -31,20 +31,20 @@ TEST(LinkFeatures, RowOfCapsulesSharesTheBoxsOuterFaces) {
              Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized());
   description::Robot robot = sim_tests::world();
   robot.links[0].shapes = {box};
-  const std::vector<LinkFeature> features = linkFeatures(robot);
+  const std::vector<Feature> features = linkFeatures(robot);
   ASSERT_GE(features.size(), 3u);
 
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1), high = -low;
-  for (const LinkFeature& feature : features)
-    for (const Eigen::Vector3d& end_L : {feature.from, feature.to}) {
+  for (const Feature& feature : features)
+    for (const Eigen::Vector3d& end_L : {feature.feeler.from, feature.feeler.to}) {
       const Eigen::Vector3d end = box.pose.inverse() * end_L;
-      low = low.cwiseMin((end.array() - feature.radius).matrix());
-      high = high.cwiseMax((end.array() + feature.radius).matrix());
+      low = low.cwiseMin((end.array() - feature.feeler.radius).matrix());
+      high = high.cwiseMax((end.array() + feature.feeler.radius).matrix());
     }
   EXPECT_LT((low + 0.5 * size).norm(), 1e-12) << "all six faces are reached and none is passed";
   EXPECT_LT((high - 0.5 * size).norm(), 1e-12);
   for (size_t i = 1; i < features.size(); ++i)
-    EXPECT_LE((features[i].from - features[i - 1].from).norm(), features[i].radius + 1e-12);
+    EXPECT_LE((features[i].feeler.from - features[i - 1].feeler.from).norm(), features[i].feeler.radius + 1e-12);
 }
 
 TEST(LinkFeatures, CubeIsASphereAndSquareRodOneCapsule) {
@@ -53,10 +53,10 @@ TEST(LinkFeatures, CubeIsASphereAndSquareRodOneCapsule) {
   cube.size = {0.1, 0.1, 0.1};
   rod.size = {0.02, 0.1, 0.02};
   robot.links[0].shapes = {cube, rod};
-  const std::vector<LinkFeature> features = linkFeatures(robot);
+  const std::vector<Feature> features = linkFeatures(robot);
   ASSERT_EQ(features.size(), 2u);
-  EXPECT_EQ(features[0].from, features[0].to);
-  EXPECT_NEAR((features[1].to - features[1].from).norm(), 0.08, 1e-15);
+  EXPECT_EQ(features[0].feeler.from, features[0].feeler.to);
+  EXPECT_NEAR((features[1].feeler.to - features[1].feeler.from).norm(), 0.08, 1e-15);
 }
 
 }  // namespace
