@@ -1,9 +1,11 @@
 #include "dsl/scene_reader.h"
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "dsl/nearest_name.h"
+#include "framework/geometry/uniform_body.h"
 
 namespace tactus::dsl {
 namespace {
@@ -21,13 +23,14 @@ Eigen::Isometry3d poseFrom(const std::vector<double>& numbers) {
   return pose;
 }
 
-/// The pose of an element whose `pose` is right, or an error there.
-std::optional<Eigen::Isometry3d> readPose(const CheckedElement& element, Findings& findings) {
-  const auto& numbers = element.values.numbers("pose");
+/// The pose that an attribute of an element gives, or an error there.
+std::optional<Eigen::Isometry3d> readPose(const CheckedElement& element, Findings& findings,
+                                          const std::string& attribute = "pose") {
+  const auto& numbers = element.values.numbers(attribute);
   if (numbers.size() == 3 || numbers.size() == 6) return poseFrom(numbers);
-  const std::string message = "attribute 'pose': expected 3 numbers (x y z) or 6 (x y z roll pitch yaw), found " +
+  const std::string message = "attribute '" + attribute + "': expected 3 numbers (x y z) or 6 (x y z roll pitch yaw), found " +
                               std::to_string(numbers.size());
-  if (const XmlAttribute* written = element.xml->attribute("pose"))
+  if (const XmlAttribute* written = element.xml->attribute(attribute))
     findings.errorAtValue(code::bad_value, *element.xml, *written, message);
   else
     findings.error(code::bad_value, *element.xml, message);
@@ -50,6 +53,7 @@ class SceneReader {
     if (!element.values.has("name")) return;
     ObjectDescription object;
     object.values = element.values;
+    for (const CheckedElement* waypoint : element.all("at")) object.values.children.push_back(waypoint->values);
     object.object.name = element.values.text("name");
     object.object.place = element.xml->place();
     if (index_.count(object.object.name))
@@ -63,9 +67,73 @@ class SceneReader {
       if (element.values.has("on")) object.on = element.values.text("on");
     }
     for (const CheckedElement& child : element.children) addShape(child, object);
+    if (element.complete) readMobility(element, object);
     index_[object.object.name] = stack_.objects.size();
     stack_.objects.push_back(std::move(object));
     elements_.push_back(&element);
+  }
+
+  void readMobility(const CheckedElement& element, ObjectDescription& object) {
+    static const std::map<std::string, description::Mobility> mobilities{
+        {"fixed", description::Mobility::fixed},
+        {"free", description::Mobility::free},
+        {"held", description::Mobility::held},
+        {"moved", description::Mobility::moved}};
+    const std::string& text = element.values.text("mobility");
+    object.object.mobility = mobilities.at(text);
+    object.object.holder = {element.values.real("hold-stiffness"), element.values.real("hold-damping"),
+                            element.values.real("hold-rotation-stiffness"), element.values.real("hold-rotation-damping")};
+    const bool by_forces = text == "free" || text == "held", on_path = text == "held" || text == "moved";
+    if (by_forces && !element.values.has("mass"))
+      findings_.error(code::missing_attribute, *element.xml, "a " + text + " object needs the attribute 'mass'");
+    if (by_forces && element.values.has("mass")) readMass(element, object.object);
+    const std::vector<const CheckedElement*> waypoints = element.all("at");
+    if (!on_path && !waypoints.empty())
+      findings_.error(code::misplaced_element, *waypoints.front()->xml, "a " + text + " object follows no path");
+    if (on_path) readPath(waypoints, object.object);
+  }
+
+  void readMass(const CheckedElement& element, description::Object& object) {
+    object.mass.mass = element.values.real("mass");
+    if (element.values.has("inertia") && element.values.has("centre")) {
+      object.mass.centre = element.values.vector3("centre");
+      const Eigen::Vector3d inertia = element.values.vector3("inertia");
+      object.mass.inertia = inertia.asDiagonal();
+      if (2 * inertia.maxCoeff() > inertia.sum() * (1 + 1e-9))
+        findings_.errorAtValue(code::bad_value, *element.xml, *element.xml->attribute("inertia"),
+                               "attribute 'inertia': no body has one that is larger than the other two together");
+      return;
+    }
+    double reach = 0;
+    for (const description::Primitive& primitive : object.primitives)
+      reach = std::max(reach, primitive.pose.translation().norm() + primitive.shape->boundingRadius());
+    if (object.primitives.empty() || !std::isfinite(reach)) return;  // told elsewhere
+    const geometry::UniformBody body = geometry::uniformBody(
+        [&](const Eigen::Vector3d& p) {
+          double nearest = std::numeric_limits<double>::infinity();
+          for (const description::Primitive& primitive : object.primitives)
+            nearest = std::min(nearest, primitive.shape->distance(primitive.pose.inverse() * p).distance);
+          return nearest;
+        },
+        Eigen::Vector3d::Zero(), reach);
+    if (body.volume <= 0) return findings_.error(code::bad_value, *element.xml, "the object is too thin to weigh: give centre and inertia");
+    object.mass.centre = body.centre;
+    object.mass.inertia = object.mass.mass / body.volume * body.inertia;
+  }
+
+  /// As far as from time 0 on; `place` puts it where the object is.
+  void readPath(const std::vector<const CheckedElement*>& waypoints, description::Object& object) {
+    object.path = {{}};
+    for (const CheckedElement* waypoint : waypoints) {
+      if (!waypoint->complete) continue;
+      const auto by = readPose(*waypoint, findings_, "by");
+      const double time = waypoint->values.real("time");
+      if (time <= object.path.back().time)
+        findings_.errorAtValue(code::bad_value, *waypoint->xml, *waypoint->xml->attribute("time"),
+                               "attribute 'time': the times of a path rise, and this one is not after " +
+                                   control::formatNumber(object.path.back().time) + " s");
+      if (by) object.path.push_back({time, *by});
+    }
   }
 
   void addShape(const CheckedElement& element, ObjectDescription& object) {
@@ -104,6 +172,12 @@ class SceneReader {
       const auto highest = first.shape->support(Eigen::Vector3d::UnitZ());  // none of a plane, which ends at its origin
       if (highest) top.translation().z() += highest->z();
       object.object.pose = top * object.object.pose;
+    }
+    for (description::Waypoint& waypoint : object.object.path) {
+      Eigen::Isometry3d pose = object.object.pose;
+      pose.translation() += waypoint.pose.translation();
+      pose.linear() = waypoint.pose.linear() * pose.linear();
+      waypoint.pose = pose;
     }
     placed_[i] = true;
   }

@@ -36,7 +36,9 @@ description::Scene Stack::scene(std::uint64_t seed) const {
     description::Object object = described.object;
     const ObjectDescription* mover = &described;
     for (std::size_t i = 0; seed != 0 && mover && i < objects.size(); ++i) {
-      object.pose.translation() += draw(*mover, seed);
+      const Eigen::Vector3d shift = draw(*mover, seed);
+      object.pose.translation() += shift;
+      for (description::Waypoint& waypoint : object.path) waypoint.pose.translation() += shift;
       const auto carrier = std::find_if(objects.begin(), objects.end(),
                                         [&](const auto& other) { return other.object.name == mover->on; });
       mover = mover->on.empty() || carrier == objects.end() ? nullptr : &*carrier;

@@ -14,6 +14,7 @@ using control::ValueType;
 // Whose members' defaults are the language's.
 const control::ControllerOptions controller_options;
 const description::ContactMaterial material;
+const description::Holder holder;
 const RunOptions run_options;
 
 const AttributeRow class_of_object{
@@ -114,7 +115,7 @@ ElementRow sceneRow() {
 ElementRow objectRow() {
   return {.name = "object",
           .kind = ElementKind::structure,
-          .description = "A fixed object: the union of its shapes.",
+          .description = "An object: the union of its shapes.",
           .attributes = {{.name = "name", .type = ValueType::identifier, .required = true,
                           .description = "The name under which references, messages and the log know it."},
                          class_of_object,
@@ -134,8 +135,47 @@ ElementRow objectRow() {
                           .description = "Of the Hunt–Crossley normal force.", .lower = 0},
                          {.name = "friction", .type = ValueType::real, .unit = "1",
                           .default_text = formatNumber(material.friction),
-                          .description = "Coulomb coefficient μ.", .lower = 0}},
-          .children = {{"@shape", 1}}};
+                          .description = "Coulomb coefficient μ.", .lower = 0},
+                         {.name = "mobility", .type = ValueType::choice, .default_text = "fixed",
+                          .description = "What decides where it is: `fixed`, its pose; `free`, the forces on it; `held`, "
+                                         "these and a spring and damper to its path; `moved`, its path alone, whatever "
+                                         "touches it.",
+                          .choices = {"fixed", "free", "held", "moved"}},
+                         {.name = "mass", .type = ValueType::real, .unit = "kg",
+                          .description = "Of a free or held one.", .lower = 0, .lower_open = true},
+                         {.name = "inertia", .type = ValueType::reals, .unit = "kg m²",
+                          .description = "About the centre of mass, along the object's axes; not given: that of a solid "
+                                         "of one density, as is the centre.",
+                          .lower = 0, .lower_open = true, .count = 3},
+                         {.name = "centre", .type = ValueType::reals, .unit = "m",
+                          .description = "Of mass, in the object.", .count = 3},
+                         {.name = "hold-stiffness", .type = ValueType::real, .unit = "N/m",
+                          .default_text = formatNumber(holder.stiffness),
+                          .description = "Of the spring that holds it.", .lower = 0},
+                         {.name = "hold-damping", .type = ValueType::real, .unit = "N s/m",
+                          .default_text = formatNumber(holder.damping),
+                          .description = "Of the damper, against the path's speed.", .lower = 0},
+                         {.name = "hold-rotation-stiffness", .type = ValueType::real, .unit = "N m/rad",
+                          .default_text = formatNumber(holder.rotation_stiffness),
+                          .description = "Of the spring that holds it upright.", .lower = 0},
+                         {.name = "hold-rotation-damping", .type = ValueType::real, .unit = "N m s/rad",
+                          .default_text = formatNumber(holder.rotation_damping),
+                          .description = "Of the damper, against the path's turning.", .lower = 0}},
+          .children = {{"@shape", 1}, {"at"}},
+          .presence = {{control::Presence::together, {"inertia", "centre"}}, {control::Presence::needs, {"inertia", "mass"}}}};
+}
+
+ElementRow atRow() {
+  return {.name = "at",
+          .kind = ElementKind::structure,
+          .description = "Where the path of a held or moved object leads: it is at rest there, goes straight to the next "
+                         "one, smoothly, and stays at the last.",
+          .attributes = {{.name = "time", .type = ValueType::real, .unit = "s", .required = true,
+                          .description = "They rise; before the first it goes from its pose at time 0.", .lower = 0,
+                          .lower_open = true},
+                         {.name = "by", .type = ValueType::reals, .unit = "m, rad", .required = true,
+                          .description = "From its pose at time 0: x y z, or x y z roll pitch yaw, along and about the "
+                                         "world's axes."}}};
 }
 
 ElementRow sensorsRow() {
@@ -268,7 +308,7 @@ ElementRow recordRow() {
 
 void addStructureElements(control::Registry& registry) {
   for (ElementRow row : {stackRow(), parameterRow(), includeRow(), defaultsRow(), pluginRow(), robotRow(), startRow(),
-                         sceneRow(), objectRow(), sensorsRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
+                         sceneRow(), objectRow(), atRow(), sensorsRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
                          recordRow(), targetRow()})
     registry.addStructure(std::move(row));
   addShapeElements(registry);

@@ -95,6 +95,7 @@ std::string objectText(const ObjectDescription& object) {
   std::string out = "    <object";
   out += attributesOf(object.values.row(), object.values) + ">\n";
   for (const ElementValues& shape : object.shapes) out += leaf("      ", shape);
+  for (const ElementValues& waypoint : object.values.children) out += leaf("      ", waypoint);
   return out + "    </object>\n";
 }
 

@@ -93,7 +93,7 @@ class SimbodyPlant::Implementation {
   }
 
   const control::Sensed& sense() const { return sensed_; }
-  const std::vector<ObjectMotion>& objects() const { return motions_of_objects_; }
+  std::span<const control::ObjectMotion> objects() const { return motions_of_objects_; }
 
   void advance(const Eigen::VectorXd& torque, double duration) {
     const double wanted = duration / options_.step;
@@ -411,7 +411,7 @@ class SimbodyPlant::Implementation {
     sensed_.qd = qd_;
     contact_.read(sensed_.contacts);
     for (size_t i = 0; i < objects_.size(); ++i) {
-      ObjectMotion& motion = motions_of_objects_[i];
+      control::ObjectMotion& motion = motions_of_objects_[i];
       motion.pose = scene_.objects[i].pose;
       if (objects_[i].body == world_body) continue;
       const BodyMotion& body = motions_[objects_[i].body];
@@ -428,7 +428,7 @@ class SimbodyPlant::Implementation {
   SimbodyRobot robot_;
   SimTK::State state_;
   std::vector<FreeState> free_;                                    // by index among those that forces move
-  std::vector<ObjectMotion> motions_of_objects_;
+  std::vector<control::ObjectMotion> motions_of_objects_;
   std::vector<ObjectBody> objects_;
   std::vector<BodyMotion> motions_;       // by mobilized body; 0 is Ground, which rests; then objects that follow a path
   ContactForce contact_;
@@ -455,7 +455,7 @@ SimbodyPlant::~SimbodyPlant() = default;
 
 const control::Sensed& SimbodyPlant::sense() const { return implementation_->sense(); }
 
-const std::vector<ObjectMotion>& SimbodyPlant::objects() const { return implementation_->objects(); }
+std::span<const control::ObjectMotion> SimbodyPlant::objects() const { return implementation_->objects(); }
 
 void SimbodyPlant::advance(const Eigen::VectorXd& torque, double duration) {
   implementation_->advance(torque, duration);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
@@ -10,13 +10,6 @@
 #include "sim/contact_force.h"
 
 namespace tactus::sim {
-
-/// How an object moves, in the order of the scene.
-struct ObjectMotion {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< object frame in W
-  Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();             ///< rad/s
-  Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();              ///< m/s, of the frame's origin
-};
 
 struct PlantOptions {
   double step = 0.25e-3;                                           ///< s, semi-explicit Euler
@@ -42,8 +35,7 @@ class SimbodyPlant final : public runtime::Plant {
   /// `duration` is a whole number of steps.  A step whose result is not finite or beyond the velocity limit is not
   /// taken: PlantError says joint, value and time, and `sense` shows the last good step.
   void advance(const Eigen::VectorXd& torque, double duration) override;
-  /// Now, of every object of the scene.
-  const std::vector<ObjectMotion>& objects() const;
+  std::span<const control::ObjectMotion> objects() const override;
 
  private:
   class Implementation;

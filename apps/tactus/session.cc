@@ -104,6 +104,8 @@ std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder
   options.row_rate = stack_.run.record_rate;
   options.contacts = contacts_.get();
   options.touched_points = touched_points_;
+  for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
+    if (scene_.objects[i].mobility != description::Mobility::fixed) options.objects.push_back({scene_.objects[i].name, i});
   return std::make_unique<runtime::Recorder>(options);
 }
 

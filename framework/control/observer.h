@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "framework/control/controller.h"
 
 namespace tactus::control {
@@ -11,6 +13,7 @@ struct ObservedTick {
   const Controller& controller;
   const Eigen::VectorXd& torque;                                   ///< N m, b + g included, held until the next tick
   double tick_us;                                                  ///< wall-clock time of Controller::tick alone
+  std::span<const ObjectMotion> objects = {};                      ///< of the scene, in its order
 };
 
 /// A tick that threw, with which the run ends.

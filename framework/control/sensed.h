@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 /// What the robot feels at one instant: plain data from the plant to the controller.
@@ -16,6 +16,13 @@ struct ContactRecord {
   double depth = 0;                                                ///< m, > 0 while overlapping
   double force_N = 0;                                              ///< along the normal, what the robot does to the object
   Eigen::Vector3d friction_W = Eigen::Vector3d::Zero();            ///< N, tangential, what the robot does to the object
+};
+
+/// How an object of the scene moves: what the plant knows and no robot does.
+struct ObjectMotion {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< object frame in W
+  Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();             ///< rad/s
+  Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();              ///< m/s, of the frame's origin
 };
 
 struct Sensed {

@@ -7,11 +7,13 @@ namespace tactus::runtime {
 using control::LevelReport;
 using control::TickSolution;
 
-LogColumns::LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts) {
+LogColumns::LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts,
+                       const std::vector<MovingObject>& objects) {
   add("time", [](const control::ObservedTick& tick) { return tick.sensed.time; });
   addLevels(controller);
   addTasksAndSignals(controller);
   addSensors(controller.readings(), set);
+  addObjects(objects);
   if (contacts) addContacts(*contacts);
   addController(controller);
   if (set == ColumnSet::all) addJoints(controller);
@@ -75,6 +77,23 @@ void LogColumns::addSensors(const control::Readings& readings, ColumnSet set) {
     for (int k = 0; k < row.count; ++k)
       add(row.scalar ? path : path + "/" + std::to_string(k),
           [value = &readings.values(i)[k]](const control::ObservedTick&) { return *value; });
+  }
+}
+
+void LogColumns::addObjects(const std::vector<MovingObject>& objects) {
+  for (const MovingObject& object : objects) {
+    const std::string path = "object/" + object.name + "/";
+    const size_t index = static_cast<size_t>(object.index);
+    for (int axis = 0; axis < 3; ++axis)
+      add(path + "xyz"[axis], [index, axis](const control::ObservedTick& tick) {
+        return tick.objects[index].pose.translation()[axis];
+      });
+    for (int i = 0; i < 4; ++i)
+      add(path + "q" + "wxyz"[i], [index, i](const control::ObservedTick& tick) {
+        const Eigen::Quaterniond q(tick.objects[index].pose.linear());
+        const double numbers[] = {q.w(), q.x(), q.y(), q.z()};
+        return std::copysign(1.0, q.w()) * numbers[i];
+      });
   }
 }
 

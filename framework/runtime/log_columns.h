@@ -14,6 +14,12 @@ enum class ColumnSet {
   all                                                              ///< joint positions, velocities and torques too
 };
 
+/// An object of the scene whose motion is logged.
+struct MovingObject {
+  std::string name;
+  int index = 0;                                                   ///< in ObservedTick::objects
+};
+
 /// The columns of log.csv: slash-separated names, `time` first, and where each value stands.
 ///
 ///     time
@@ -23,6 +29,7 @@ enum class ColumnSet {
 ///     level/<priority>/<controller>/<the controller's own>
 ///     signal/<name>/<the signal's own>
 ///     sensor/<name>/<port>, or <port>/0, <port>/1, … of a vector of at most 6 numbers; all of it in the set `all`
+///     object/<name>/{x,y,z,qw,qx,qy,qz}                     of objects that move: m, and a quaternion with w ≥ 0
 ///     contact/{contacts,links,mean_N,max_N,undesired_max_N}
 ///     controller/{torque_norm,scale,status,fallback,limited}
 ///     controller/rate_limited, controller/late              when the controller declares a torque rate, a deadline
@@ -37,7 +44,8 @@ class LogColumns {
 
   /// Made from the first tick: what a back end tells is known only after it has solved once.
   /// `contacts` may be null; controller and contacts must outlive this object.
-  LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts);
+  LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts,
+             const std::vector<MovingObject>& objects = {});
 
   const std::vector<std::string>& names() const { return names_; }
   size_t size() const { return values_.size(); }
@@ -48,6 +56,7 @@ class LogColumns {
   void addLevels(const control::Controller& controller);
   void addTasksAndSignals(const control::Controller& controller);
   void addSensors(const control::Readings& readings, ColumnSet set);
+  void addObjects(const std::vector<MovingObject>& objects);
   void addContacts(const ContactMetrics& contacts);
   void addController(const control::Controller& controller);
   void addJoints(const control::Controller& controller);

@@ -49,7 +49,7 @@ LoopResult runLoop(Plant& plant, control::Controller& controller, double duratio
       const auto before = Clock::now();
       const Eigen::VectorXd& torque = tickOf(controller, sensed, observers);
       const double tick_us = Microseconds(Clock::now() - before).count();
-      for (control::Observer* observer : observers) observer->observe({plant.truth(), sensed, controller, torque, tick_us});
+      for (control::Observer* observer : observers) observer->observe({plant.truth(), sensed, controller, torque, tick_us, plant.objects()});
       plant.advance(torque, controller.period());
     }
   } catch (const PlantError& error) {

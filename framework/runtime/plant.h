@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -23,6 +24,8 @@ class Plant {
   virtual const control::Sensed& sense() const = 0;
   /// What there is, where sensors stand between it and `sense`.
   virtual const control::Sensed& truth() const { return sense(); }
+  /// Now, of every object of the scene, in its order; none where the plant knows of none.
+  virtual std::span<const control::ObjectMotion> objects() const { return {}; }
   /// Holds the joint torques for `duration` seconds.  Throws PlantError, with the state of the last good step kept.
   virtual void advance(const Eigen::VectorXd& torque, double duration) = 0;
 };

@@ -14,6 +14,7 @@ struct RecorderOptions {
   ColumnSet columns = ColumnSet::standard;
   double row_rate = 100;                                           ///< Hz, rows of log.csv; at most the control rate
   const ContactMetrics* contacts = nullptr;                        ///< observes before the recorder; null: no columns
+  std::vector<MovingObject> objects = {};                          ///< whose motion goes into log.csv
   const control::TouchedPoints* touched_points = nullptr;          ///< null: touched_points.csv keeps its header alone
 };
 

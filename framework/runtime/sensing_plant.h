@@ -24,6 +24,7 @@ class SensingPlant final : public Plant {
 
   const control::Sensed& sense() const override { return sensors_.empty() ? plant_->sense() : felt_; }
   const control::Sensed& truth() const override { return plant_->truth(); }
+  std::span<const control::ObjectMotion> objects() const override { return plant_->objects(); }
   void advance(const Eigen::VectorXd& torque, double duration) override;
 
  private:

@@ -64,7 +64,7 @@ description::Scene scene(std::vector<description::Object> objects) {
 /// The plant of a scene whose robot is a lone base, which touches nothing.
 SimbodyPlant plantOf(const description::Scene& scene) { return {sim_tests::world(), scene, nothing}; }
 
-double speedOf(const ObjectMotion& motion, double reach) {
+double speedOf(const control::ObjectMotion& motion, double reach) {
   return motion.linear_W.norm() + reach * motion.angular_W.norm();
 }
 
@@ -89,7 +89,7 @@ TEST(FreeObject, KeepsItsAngularMomentumInFlight) {
   description::Object step = sim_tests::object("step", at(0.05, 0, -0.02), std::make_shared<geometry::Box>(Vector3d(0.06, 0.2, 0.04)));
   SimbodyPlant plant = plantOf(scene({step, tilted}));
   const auto momentum = [&] {
-    const ObjectMotion& motion = plant.objects()[1];
+    const control::ObjectMotion& motion = plant.objects()[1];
     const Eigen::Matrix3d R = motion.pose.linear();
     return Vector3d(R * tilted.mass.inertia * R.transpose() * motion.angular_W);
   };
@@ -199,7 +199,7 @@ TEST(Objects, ThatCollideKeepTheirMomentumAndGainNoEnergy) {
     double total = 0;
     const double masses[] = {0.1, 0.3}, radii[] = {0.02, 0.025};
     for (int i : {0, 1}) {
-      const ObjectMotion& motion = plant.objects()[i];
+      const control::ObjectMotion& motion = plant.objects()[i];
       total += 0.5 * masses[i] * motion.linear_W.squaredNorm() +
                0.2 * masses[i] * radii[i] * radii[i] * motion.angular_W.squaredNorm() -
                masses[i] * space.gravity.dot(motion.pose.translation());
@@ -287,7 +287,7 @@ TEST(Objects, MoveBySameBitsAgain) {
     SimbodyPlant plant = plantOf(scene({ground(), can(at(0, 0, 0.08)), brick(at(0.03, 0, 0.15)), ball("ball", {0, 0.02, 0.3})}));
     plant.advance(nothing, 1);
     std::vector<double> numbers;
-    for (const ObjectMotion& motion : plant.objects())
+    for (const control::ObjectMotion& motion : plant.objects())
       for (int i = 0; i < 3; ++i) {
         numbers.push_back(motion.pose.translation()[i]);
         numbers.push_back(motion.angular_W[i]);
