@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "conformance/broken.h"
 #include "conformance/report.h"
 #include "dsl/stack.h"
 #include "framework/control/registry.h"
@@ -22,14 +23,6 @@ void checkTask(const Subject& subject, Report& report);
 void checkSignal(const Subject& subject, Report& report);
 /// The stack's back end.
 void checkBackEnd(const Subject& subject, Report& report);
-
-/// What a law found: broken, or not asked, and why.
-struct Broken {
-  std::string message;
-};
-struct NotAsked {
-  std::string message;
-};
 
 /// Runs one law, which throws `Broken` or `NotAsked`, and adds its finding; any other exception is broken too.
 template <class Law>

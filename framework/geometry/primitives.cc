@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
+
+#include "framework/geometry/lengths.h"
 
 namespace tactus::geometry {
 namespace {
@@ -17,11 +17,6 @@ constexpr double level = 1e-9;
 
 /// Sign of a component of a direction, 0 where it is level.
 double side(double component) { return std::abs(component) < level ? 0 : std::copysign(1.0, component); }
-
-double positive(const char* what, double length) {
-  if (!(length > 0) || !std::isfinite(length)) throw std::invalid_argument(std::string(what) + " is finite and > 0");
-  return length;
-}
 
 /// Distance to a sphere about the origin, with a fixed answer at its centre.
 SignedDistance fromCentre(const Vector3d& offset, double radius, const Vector3d& normal_at_centre) {
