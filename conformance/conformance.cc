@@ -5,6 +5,7 @@
 
 #include "conformance/bench.h"
 #include "conformance/laws.h"
+#include "conformance/shape_laws.h"
 #include "conformance/specimen.h"
 #include "dsl/compile.h"
 #include "dsl/diagnostic.h"
@@ -85,8 +86,41 @@ void checkReads(const ElementRow& row, const std::set<std::string, std::less<>>&
   });
 }
 
+/// Shapes stand in the scene, and need no stack to be made.
+void checkShapes(const control::Registry& registry, const ElementRow& row, const dsl::Stack* given, Report& report) {
+  std::vector<control::ElementValues> instances;
+  if (given)
+    for (const dsl::ObjectDescription& object : given->objects)
+      for (const control::ElementValues& values : object.shapes)
+        if (values.row().name == row.name) instances.push_back(values);
+  const bool from_defaults = instances.empty();
+  if (from_defaults) {
+    std::string why_not;
+    const auto values = specimenValues(row, why_not);
+    if (!values) {
+      report.add({row.name, "", "instance", Outcome::broken, why_not + "; give a stack that holds one (--stack FILE)"});
+      return;
+    }
+    instances.push_back(*values);
+  }
+  const dsl::Stack none;
+  std::set<std::string, std::less<>> reads{"pose"};                // asked for by the reader of the scene
+  std::vector<std::shared_ptr<const geometry::Shape>> shapes;
+  for (control::ElementValues& values : instances) {
+    values.watch(&reads);
+    judge({none, registry, row.name, ""}, "instance", report, [&] { shapes.push_back(registry.makeShape(values)); });
+    if (report.findings.back().outcome == Outcome::broken) return;
+  }
+  checkReads(row, reads, from_defaults, report);
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    for (const ShapeLaw& law : shapeLaws())
+      judge({none, registry, row.name, shapes.size() > 1 ? std::to_string(i + 1) : ""}, law.name, report,
+            [&] { law.check(*shapes[i]); });
+}
+
 void checkElement(const control::Registry& registry, const ElementRow& row, const dsl::Stack* given, Report& report) {
   checkSchema(row, report);
+  if (row.kind == ElementKind::shape) return checkShapes(registry, row, given, report);
   if (row.kind != ElementKind::task && row.kind != ElementKind::signal && row.kind != ElementKind::back_end) return;
 
   std::optional<dsl::Stack> stack;

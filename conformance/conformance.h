@@ -37,6 +37,9 @@
 ///   ports        every declared port is served, at one address for the signal's life; scalars are finite.
 ///   allocation, determinism   as for tasks, over scalar ports and log columns.
 ///
+/// of each shape, those of the stack's scene or one made from its defaults: finite, gradient, lipschitz, foot,
+/// bounding, support, convex, determinism, allocation, as shape_laws.h tells.
+///
 /// of each back end, on the tick problems of the stack
 ///   torque       finite, and within the limits where it declares that it honours them.
 ///   determinism  as above.

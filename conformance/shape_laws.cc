@@ -183,7 +183,8 @@ void checkConvex(const Shape& shape) {
     const double mean = 0.5 * (shape.distance(a).distance + shape.distance(b).distance);
     const double above = shape.distance(0.5 * (a + b)).distance - mean;
     if (!(above <= 2 * shape.error() + 1e-12 * sizeOf(shape)))
-      throw Broken{"half way between two points the distance is " + shown(above) + " m above the mean" + at(0.5 * (a + b))};
+      throw Broken{"half way between two points the distance is " + shown(above) + " m above the mean" +
+                   at(0.5 * (a + b))};
   }
 }
 

@@ -7,10 +7,10 @@
 /// What every shape keeps, whatever it looks like, at random points in and around its bounding sphere (about the origin
 /// for one without end), R below; seeds are fixed.
 ///
-///   finite       distance and gradient are numbers, the gradient of unit length to 1e-9: at random points, on its axes,
-///                at its origin, on its surface, and at 1000 R.
-///   gradient     it is the direction of the distance's differences, to 1e-5, away from ridges, where it turns; and these
-///                are of unit length, to 1e-5, where the shape is exact.
+///   finite       distance and gradient are numbers, the gradient of unit length to 1e-9: at random points, on its
+///                axes, at its origin, on its surface, and at 1000 R.
+///   gradient     it is the direction of the distance's differences, to 1e-5, away from ridges, where it turns; and
+///                these are of unit length, to 1e-5, where the shape is exact.
 ///   lipschitz    no two distances differ by more than the points are apart, and twice the error; and nowhere does the
 ///                distance jump: points 1e-7 R apart differ by at most four times as much.
 ///   foot         p − distance · gradient lies on the surface for p outside, and not outside it for p inside: to 1e-9 R

@@ -41,6 +41,23 @@ std::string numbers(const AttributeRow& row) {
   return text;
 }
 
+std::string guess(const ElementRow& row, const AttributeRow& attribute) {
+  switch (attribute.type) {
+    case ValueType::flag: return "true";
+    case ValueType::integer:
+    case ValueType::real:
+    case ValueType::reals:
+    case ValueType::points: return numbers(attribute);
+    case ValueType::choice: return attribute.choices.front();
+    case ValueType::link: return "palm";
+    case ValueType::links: return "fingers";
+    case ValueType::joints: return "arm";
+    case ValueType::identifier: return "something";
+    default: break;
+  }
+  throw NoGuess{"<" + row.name + "> requires '" + attribute.name + "', and nothing tells what may stand there"};
+}
+
 class Maker {
  public:
   explicit Maker(const control::Registry& registry) : registry_(registry) {
@@ -97,23 +114,6 @@ class Maker {
     return {control::makeValues(row, given), name, {}, "<" + row.name + ">"};
   }
 
-  std::string guess(const ElementRow& row, const AttributeRow& attribute) {
-    switch (attribute.type) {
-      case ValueType::flag: return "true";
-      case ValueType::integer:
-      case ValueType::real:
-      case ValueType::reals:
-      case ValueType::points: return numbers(attribute);
-      case ValueType::choice: return attribute.choices.front();
-      case ValueType::link: return "palm";
-      case ValueType::links: return "fingers";
-      case ValueType::joints: return "arm";
-      case ValueType::identifier: return "something";
-      default: break;
-    }
-    throw NoGuess{"<" + row.name + "> requires '" + attribute.name + "', and nothing tells what may stand there"};
-  }
-
   /// "name.port" of a signal with a port of the attribute's type, which is added.
   std::string port(const AttributeRow& attribute) {
     for (const ElementRow& row : registry_.elements().rows()) {
@@ -165,6 +165,18 @@ std::optional<dsl::Stack> specimenOf(const ElementRow& row, const control::Regis
     why_not = none.reason;
   } catch (const std::exception& error) {
     why_not = error.what();
+  }
+  return std::nullopt;
+}
+
+std::optional<control::ElementValues> specimenValues(const ElementRow& row, std::string& why_not) {
+  try {
+    std::map<std::string, std::string> given;
+    for (const AttributeRow& attribute : row.attributes)
+      if (attribute.required) given[attribute.name] = guess(row, attribute);
+    return control::makeValues(row, given);
+  } catch (const NoGuess& none) {
+    why_not = none.reason;
   }
   return std::nullopt;
 }

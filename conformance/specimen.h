@@ -14,4 +14,7 @@ namespace tactus::conformance {
 std::optional<dsl::Stack> specimenOf(const control::ElementRow& row, const control::Registry& registry,
                                      std::string& why_not);
 
+/// The element's values alone, so made: for shapes, which stand in no controller.
+std::optional<control::ElementValues> specimenValues(const control::ElementRow& row, std::string& why_not);
+
 }  // namespace tactus::conformance

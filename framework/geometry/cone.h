@@ -8,7 +8,8 @@ namespace tactus::geometry {
 /// (−length/2) to that at the top (+length/2).  Convex; distances are exact.
 class Cone final : public Shape {
  public:
-  /// m.  Throws std::invalid_argument unless all are finite, the length is above 0, no radius is below 0 and one is above.
+  /// m.  Throws std::invalid_argument unless all are finite, the length is above 0, no radius is below 0 and one is
+  /// above.
   Cone(double bottom_radius, double top_radius, double length);
   double bottomRadius() const { return bottom_radius_; }
   double topRadius() const { return top_radius_; }

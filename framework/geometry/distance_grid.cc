@@ -53,8 +53,9 @@ void DistanceGrid::mix() {
     int ahead[3] = {i, j, k}, behind[3] = {i, j, k};
     ahead[axis] = std::min(ahead[axis] + 1, nodes_[axis] - 1);
     behind[axis] = std::max(behind[axis] - 1, 0);
-    return (values_[index(ahead[0], ahead[1], ahead[2])].*member - values_[index(behind[0], behind[1], behind[2])].*member) /
-           static_cast<float>(ahead[axis] - behind[axis]);
+    const float above = values_[index(ahead[0], ahead[1], ahead[2])].*member;
+    const float below = values_[index(behind[0], behind[1], behind[2])].*member;
+    return (above - below) / static_cast<float>(ahead[axis] - behind[axis]);
   };
   for (int k = 0; k < nodes_[2]; ++k)
     for (int j = 0; j < nodes_[1]; ++j)
@@ -83,7 +84,8 @@ DistanceGrid::Sample DistanceGrid::at(const Vector3d& p) const {
       const Node* node = &values_[index(first[0], first[1] + b, first[2] + c)];
       for (int a = 0; a < 2; ++a) {
         const Node& n = node[a];
-        const double x = X.value[2 * a], xd = X.value[2 * a + 1], slope_x = X.slope[2 * a], slope_xd = X.slope[2 * a + 1];
+        const double x = X.value[2 * a], xd = X.value[2 * a + 1];
+        const double slope_x = X.slope[2 * a], slope_xd = X.slope[2 * a + 1];
         // Along x: the value and what multiplies the derivatives along y, z and both.
         const double v = x * n.f + xd * n.x, vy = x * n.y + xd * n.xy, vz = x * n.z + xd * n.xz, vyz = x * n.yz;
         const double along_y = y * v + yd * vy, along_y_z = y * vz + yd * vyz;

@@ -13,13 +13,14 @@ namespace tactus::geometry {
 /// everywhere, and the gradient is that of the distance as it is given.
 ///
 /// Hermite's form: each node holds f, its derivatives and its mixed second derivatives by differences of neighbours'
-/// gradients (f_xyz, whose share is at most 1/512 of it, is left out).  Numbers are kept as float, 1e-7 of the distance.
+/// gradients (f_xyz, whose share is at most 1/512 of it, is left out).  Numbers are kept as float, 1e-7 of the
+/// distance.
 class DistanceGrid {
  public:
   using Distance = std::function<SignedDistance(const Eigen::Vector3d& p, double within)>;
 
-  /// Nodes at low + cell · (i, j, k), 0 ≤ (i, j, k) < nodes, at least 2 each.  `distance` is asked from node to neighbour,
-  /// each time with a length within which there is some of the surface.
+  /// Nodes at low + cell · (i, j, k), 0 ≤ (i, j, k) < nodes, at least 2 each.  `distance` is asked from node to
+  /// neighbour, each time with a length within which there is some of the surface.
   DistanceGrid(const Eigen::Vector3d& low, const Eigen::Array3i& nodes, double cell, const Distance& distance);
 
   double cell() const { return cell_; }

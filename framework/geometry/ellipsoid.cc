@@ -19,23 +19,22 @@ double longest(const Vector3d& radii) {
 }
 
 /// The t > 0 with F(t) = Σ (aᵢ/(t + gapᵢ))² = 1, a ≥ 0, gap₂ = 0, a₂ > 0 or F(0) > 1.  F falls, and 1/√F is concave
-/// and nearly straight, so Newton's steps on it are few.
+/// and nearly straight, so Newton's steps on it are few.  Where F is 1 to rounding, the point lies on the ellipsoid.
 double solve(const Vector3d& a, const Vector3d& gap) {
+  constexpr double rounding = 1e-15;
   double low = std::max(0.0, (a - gap).maxCoeff()), high = a.norm();
   double t = high, width = high - low;
-  for (int i = 0; i < 200 && low < high; ++i) {
-    const Vector3d shifted = t * Vector3d::Ones() + gap;
-    const Vector3d ratio = a.cwiseQuotient(shifted);
-    const double F = ratio.squaredNorm();
-    if (!(F > 0)) break;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d inverse = (t * Vector3d::Ones() + gap).cwiseInverse();
+    const Vector3d squared = a.cwiseProduct(inverse).cwiseAbs2();
+    const double F = squared.sum();
+    if (std::abs(F - 1) <= rounding) break;
     (F > 1 ? low : high) = t;
-    const double minus_half_slope = ratio.cwiseProduct(ratio).cwiseQuotient(shifted).sum();
-    double next = t + F * (std::sqrt(F) - 1) / minus_half_slope;
-    const bool shrinks = high - low <= 0.5 * width;
+    double next = t + F * (std::sqrt(F) - 1) / squared.dot(inverse);
+    const bool halved = high - low <= 0.5 * width;
     width = high - low;
-    if (std::abs(next - t) <= 1e-16 * t) break;
-    if (!(next > low && next < high) || (!shrinks && i > 4)) next = 0.5 * (low + high);
-    if (next == t || next <= low || next >= high) break;
+    if (!(next > low && next < high) || (i > 8 && !halved)) next = low + 0.5 * (high - low);
+    if (next == t || next == low || next == high) break;
     t = next;
   }
   return t;

@@ -86,7 +86,9 @@ struct Mesh::Parts {
   void measure() {
     constexpr double slack = 1.5;                                  // for what lies between the points
     std::mt19937_64 random(1);
-    const auto within = [&](double low, double high) { return low + (high - low) * 0x1p-64 * static_cast<double>(random()); };
+    const auto within = [&](double low, double high) {
+      return low + (high - low) * 0x1p-64 * static_cast<double>(random());
+    };
     const double finest = grids.front().cell();
     for (const DistanceGrid& grid : grids) {
       const Vector3d low = grid.low(), high = grid.high();

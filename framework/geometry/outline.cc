@@ -18,7 +18,8 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 double side(const Vector2d& a, const Vector2d& b, const Vector2d& c) { return cross(b - a, c - a); }
 
 bool boxesMeet(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
-  return (a.cwiseMin(b).array() <= c.cwiseMax(d).array()).all() && (c.cwiseMin(d).array() <= a.cwiseMax(b).array()).all();
+  return (a.cwiseMin(b).array() <= c.cwiseMax(d).array()).all() &&
+         (c.cwiseMin(d).array() <= a.cwiseMax(b).array()).all();
 }
 
 /// Whether the segments ab and cd have a point in common.

@@ -10,8 +10,9 @@ struct PlanarDistance {
   Eigen::Vector2d gradient = Eigen::Vector2d::UnitY();             ///< unit, outward normal at the nearest border point
 };
 
-/// The border of a region of the plane: a simple polygon, convex or not.  Distances are exact and take time in proportion
-/// to the number of edges; where several border points are equally near, the one on the earliest edge is taken.
+/// The border of a region of the plane: a simple polygon, convex or not.  Distances are exact and take time in
+/// proportion to the number of edges; where several border points are equally near, the one on the earliest edge is
+/// taken.
 ///
 /// Which side a point is on is told by the edge that it is nearest to, or, where that is a corner, by the sum of the
 /// normals of both edges, which no point outside looks at from behind (Baerentzen & Aanaes 2005, in the plane).

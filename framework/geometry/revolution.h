@@ -7,8 +7,8 @@
 
 namespace tactus::geometry {
 
-/// What a closed profile sweeps in a whole turn about z: cups, bowls, bottles.  Distances are exact, inside the wall too;
-/// they take time in proportion to the number of the profile's edges.
+/// What a closed profile sweeps in a whole turn about z: cups, bowls, bottles.  Distances are exact, inside the wall
+/// too; they take time in proportion to the number of the profile's edges.
 class Revolution final : public Shape {
  public:
   /// Corners (ρ, z) of the profile, ρ ≥ 0 (m), either way round.  It may touch the axis; edges on it are no surface.

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double level = 1e-9;                                     ///< of directions: shorter in the plane counts as none
+constexpr double level = 1e-9;                                     ///< shorter in the plane, a direction has none
 
 constexpr double turn = 2 * std::numbers::pi;
 constexpr double rounding = 1e-3;                                  ///< of a turn: 6.28 and 6.29 are meant as one

@@ -8,9 +8,9 @@ namespace tactus::geometry {
 /// when the angle is 2π (to a thousandth), else a bent rod with round ends.  Distances are exact.
 class Torus final : public Shape {
  public:
-  /// `radius` of the circle and of the tube in m, `angle` in rad.  Throws std::invalid_argument unless all are finite and
-  /// above 0, the angle is at most 2π, the tube no thicker than its circle, and the two ends keep clear of each other
-  /// (what overlaps is not as deep as it looks).
+  /// `radius` of the circle and of the tube in m, `angle` in rad.  Throws std::invalid_argument unless all are finite
+  /// and above 0, the angle is at most 2π, the tube no thicker than its circle, and the two ends keep clear of each
+  /// other (what overlaps is not as deep as it looks).
   Torus(double radius, double tube_radius, double angle);
   double radius() const { return radius_; }
   double tubeRadius() const { return tube_radius_; }

@@ -47,7 +47,8 @@ double TriangleMesh::volume() const {
 TriangleMesh welded(const TriangleMesh& mesh) {
   std::vector<int> order(mesh.vertices.size()), merged(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return before(mesh.vertices[i], mesh.vertices[j]); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int i, int j) { return before(mesh.vertices[i], mesh.vertices[j]); });
   TriangleMesh result;
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Vector3d& vertex = mesh.vertices[order[k]];

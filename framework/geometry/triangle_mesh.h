@@ -16,8 +16,8 @@ struct TriangleMesh {
   double volume() const;
 };
 
-/// One vertex for all of the same place; triangles that have a vertex twice are dropped.  For files that repeat a vertex
-/// in each of its triangles.
+/// One vertex for all of the same place; triangles that have a vertex twice are dropped.  For files that repeat a
+/// vertex in each of its triangles.
 TriangleMesh welded(const TriangleMesh& mesh);
 
 /// Throws std::invalid_argument, with a sentence that counts what is wrong, unless the mesh bounds a solid: vertices

@@ -16,7 +16,8 @@ class TriangleSearch {
   /// Throws what `requireClosed` throws.
   explicit TriangleSearch(const TriangleMesh& mesh);
 
-  /// `within`: a distance (m) in which the caller knows that there is some of the surface; spares time, changes nothing.
+  /// `within`: a distance (m) in which the caller knows that there is some of the surface; spares time, changes
+  /// nothing.
   SignedDistance distance(const Eigen::Vector3d& p, double within = std::numeric_limits<double>::infinity()) const;
 
  private:

@@ -1,4 +1,4 @@
-// Every built-in task and signal, and every shipped plugin, keeps the laws.
+// Every built-in task, signal and shape, and every shipped plugin, keeps the laws.
 //
 // Strategy: one stack holds instances that use every attribute; a test fails when a type has none.
 
@@ -39,6 +39,31 @@ TEST(BuiltIns, HaveAnInstanceInTheStackOfThisTest) {
   for (const auto& level : stack.levels)
     for (const auto& task : level.tasks) there.insert(task.values.row().name);
   for (const std::string& name : tasksAndSignals(workshop.registry())) EXPECT_TRUE(there.contains(name)) << name;
+}
+
+TEST(Shapes, KeepTheLaws) {
+  Workshop workshop;
+  const dsl::Stack stack = workshop.read(TACTUS_SOURCE_DIR "/tests/conformance/every_shape.xml");
+  const std::vector<std::string> shapes = workshop.registry().names(control::ElementKind::shape);
+  std::set<std::string> there;
+  for (const auto& object : stack.objects)
+    for (const auto& values : object.shapes) there.insert(values.row().name);
+  EXPECT_EQ(there, std::set<std::string>(shapes.begin(), shapes.end())) << "each has an instance";
+
+  const Report report = checkElements(workshop.registry(), shapes, &stack);
+  EXPECT_TRUE(report.conforms()) << report.text();
+  for (const Finding& finding : report.findings)
+    if (finding.outcome == Outcome::not_asked) {
+      const bool of_plane = finding.element == "plane" && finding.law == "bounding";
+      EXPECT_TRUE(of_plane || finding.law == "convex") << finding.element << ": " << finding.law;
+    }
+}
+
+TEST(Shapes, AreMadeFromTheirDefaultsWhereNothingElseIsNeeded) {
+  Workshop workshop;
+  const Report report = checkElements(workshop.registry(), {"box", "cone", "ellipsoid", "torus"});
+  EXPECT_TRUE(report.conforms()) << report.text();
+  EXPECT_FALSE(checkElements(workshop.registry(), {"mesh"}).conforms());
 }
 
 TEST(BackEnds, KeepTheLaws) {

@@ -37,7 +37,8 @@ TEST(Compound, TakesOverWhatHoldsOfItsParts) {
   const Compound one({placed(std::make_shared<Sphere>(0.03), {1, 0, 0})});
   EXPECT_TRUE(one.isConvex());
   EXPECT_EQ(one.error(), 0);
-  const Compound endless({placed(std::make_shared<Sphere>(0.03), {1, 0, 0}), placed(std::make_shared<Plane>(), {0, 0, -1})});
+  const Compound endless(
+      {placed(std::make_shared<Sphere>(0.03), {1, 0, 0}), placed(std::make_shared<Plane>(), {0, 0, -1})});
   EXPECT_TRUE(std::isinf(endless.boundingRadius()));
   EXPECT_FALSE(endless.support(Vector3d::UnitX()));
   EXPECT_NEAR(endless.distance({1, 0, -0.7}).distance, 0.3, 1e-16);

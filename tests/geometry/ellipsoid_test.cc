@@ -19,7 +19,7 @@ TEST(Ellipsoid, OfEqualRadiiIsASphere) {
   const Ellipsoid ball({0.1, 0.1, 0.1});
   for (int i = 0; i < 1000; ++i) {
     const Vector3d p(uniform(engine), uniform(engine), uniform(engine));
-    EXPECT_NEAR(ball.distance(p).distance, p.norm() - 0.1, 1e-16);
+    EXPECT_NEAR(ball.distance(p).distance, p.norm() - 0.1, 1e-15);
     EXPECT_LT((ball.distance(p).gradient - p.normalized()).norm(), 1e-14);
   }
   EXPECT_DOUBLE_EQ(ball.distance(Vector3d::Zero()).distance, -0.1);
@@ -27,13 +27,13 @@ TEST(Ellipsoid, OfEqualRadiiIsASphere) {
 
 TEST(Ellipsoid, OnItsAxesByHand) {
   const Ellipsoid egg({0.1, 0.3, 0.2});
-  EXPECT_NEAR(egg.distance({0.15, 0, 0}).distance, 0.05, 1e-16);
-  EXPECT_NEAR(egg.distance({0, -0.35, 0}).distance, 0.05, 1e-16);
+  EXPECT_NEAR(egg.distance({0.15, 0, 0}).distance, 0.05, 1e-15);
+  EXPECT_NEAR(egg.distance({0, -0.35, 0}).distance, 0.05, 1e-15);
   EXPECT_EQ(egg.distance({0, -0.35, 0}).gradient, Vector3d(0, -1, 0));
-  EXPECT_NEAR(egg.distance({0, 0, 0.26}).distance, 0.06, 1e-16);
-  EXPECT_NEAR(egg.distance(Vector3d::Zero()).distance, -0.1, 1e-16);
+  EXPECT_NEAR(egg.distance({0, 0, 0.26}).distance, 0.06, 1e-15);
+  EXPECT_NEAR(egg.distance(Vector3d::Zero()).distance, -0.1, 1e-15);
   EXPECT_EQ(egg.distance(Vector3d::Zero()).gradient, Vector3d(1, 0, 0)) << "one of two that are equally near";
-  EXPECT_NEAR(egg.distance({0.09, 0, 0}).distance, -0.01, 1e-16);
+  EXPECT_NEAR(egg.distance({0.09, 0, 0}).distance, -0.01, 1e-15);
 }
 
 /// The nearest points of points that are made from points of the surface, along its normal, no deeper than the least

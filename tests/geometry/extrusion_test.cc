@@ -12,7 +12,8 @@ using Eigen::Vector3d;
 
 /// The letter U, 60 mm wide, its arms 20 mm thick.
 Extrusion letter() {
-  return Extrusion({{0, 0}, {0.06, 0}, {0.06, 0.08}, {0.04, 0.08}, {0.04, 0.02}, {0.02, 0.02}, {0.02, 0.08}, {0, 0.08}}, 0.1);
+  return Extrusion({{0, 0}, {0.06, 0}, {0.06, 0.08}, {0.04, 0.08}, {0.04, 0.02}, {0.02, 0.02}, {0.02, 0.08}, {0, 0.08}},
+                   0.1);
 }
 
 TEST(Extrusion, ByHand) {

@@ -25,8 +25,8 @@ using namespace geometry;
 using testing::HasSubstr;
 
 /// A block with a notch: not convex, with sharp edges both ways.
-const std::vector<Vector2d> notched{{-0.06, -0.05}, {0.06, -0.05}, {0.06, 0.05}, {0.02, 0.05}, {0.01, -0.01}, {-0.03, 0.05},
-                                    {-0.06, 0.05}};
+const std::vector<Vector2d> notched{{-0.06, -0.05}, {0.06, -0.05}, {0.06, 0.05}, {0.02, 0.05},
+                                    {0.01, -0.01},  {-0.03, 0.05}, {-0.06, 0.05}};
 
 /// The same as triangles.
 TriangleMesh notchedMesh(double length) {
@@ -76,7 +76,8 @@ double bruteForce(const TriangleMesh& mesh, const Vector3d& p, int n) {
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j) {
         const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
-        nearest = std::min(nearest, ((1 - u - v) * mesh.vertices[a] + u * mesh.vertices[b] + v * mesh.vertices[c] - p).norm());
+        const Vector3d q = (1 - u - v) * mesh.vertices[a] + u * mesh.vertices[b] + v * mesh.vertices[c];
+        nearest = std::min(nearest, (q - p).norm());
       }
   return nearest;
 }
@@ -182,7 +183,7 @@ TEST(Mesh, GradientIsGoodOutsideFlatFaces) {
   const Mesh mesh(boxMesh(size));
   Random random(5);
   for (int i = 0; i < 5000; ++i) {
-    Vector3d p = 0.35 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).cwiseProduct(size);
+    Vector3d p = random.inCube(0.35).cwiseProduct(size);
     p.z() = 0.5 * size.z() + random.uniform(0, 3.5) * mesh.cell();
     ASSERT_NEAR(mesh.distance(p).distance, p.z() - 0.5 * size.z(), 1e-8);
     ASSERT_LT((mesh.distance(p).gradient - Vector3d::UnitZ()).norm(), 1e-5);

@@ -62,11 +62,12 @@ TEST(Outline, SaysWhatIsWrong) {
   EXPECT_EQ(said({{0, 0}, {1, 0}, {0, 1}, {0, 0}}), "corners 4 and 1 of the outline are the same");
   EXPECT_EQ(said({{0, 0}, {2, 0}, {1, 0}, {1, 1}}), "the outline turns back on itself at corner 2");
   EXPECT_EQ(said({{0, 0}, {1, 1}, {1, 0}, {0, 1}}),
-            "the outline meets itself: its edge between corners 1 and 2 and that between corners 3 and 4 have a point in "
-            "common");
+            "the outline meets itself: its edge between corners 1 and 2 and that between corners 3 and 4 have a point "
+            "in common");
   EXPECT_THAT(said({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}), HasSubstr("meets itself"));  // touches an edge
   EXPECT_THAT(said({{0, 0}, {1, 0}, {2, 0}}), HasSubstr("turns back"));                    // no area
-  EXPECT_EQ(refusal([] { Outline::rightHalf({{-0.1, 0}, {1, 0}, {1, 1}}); }), "corner 1 of the outline lies across the axis");
+  EXPECT_EQ(refusal([] { Outline::rightHalf({{-0.1, 0}, {1, 0}, {1, 1}}); }),
+            "corner 1 of the outline lies across the axis");
   EXPECT_EQ(said(ell), "accepted");
 }
 

@@ -137,9 +137,9 @@ std::vector<Vector2d> star(Random& random, int corners, const Vector2d& middle, 
 }
 
 std::vector<Vector2d> cup(Random& random) {
-  const double wall = random.uniform(0.005, 0.02), bottom = random.uniform(0.005, 0.02), height = random.uniform(0.05, 0.15),
-               radius = random.uniform(0.04, 0.1);
-  return {{0, 0}, {0.8 * radius, 0}, {radius, height}, {radius - wall, height}, {0.8 * radius - wall, bottom}, {0, bottom}};
+  const double wall = random.uniform(0.005, 0.02), bottom = random.uniform(0.005, 0.02);
+  const double height = random.uniform(0.05, 0.15), top = random.uniform(0.04, 0.1), foot = 0.8 * top;
+  return {{0, 0}, {foot, 0}, {top, height}, {top - wall, height}, {foot - wall, bottom}, {0, bottom}};
 }
 
 std::vector<Vector2d> closed(std::vector<Vector2d> line) {
@@ -159,7 +159,8 @@ std::vector<Specimen> exactShapes(Random& random, double spacing) {
   put("box", std::make_shared<Box>(size), boxPoints(size, spacing));
   const double r = random.length(), s = random.length(), l = random.length();
   put("sphere", std::make_shared<Sphere>(r), ballPoints(r, spacing));
-  put("cylinder", std::make_shared<Cylinder>(r, l), sweptPoints({{0, -l / 2}, {r, -l / 2}, {r, l / 2}, {0, l / 2}}, spacing));
+  put("cylinder", std::make_shared<Cylinder>(r, l),
+      sweptPoints({{0, -l / 2}, {r, -l / 2}, {r, l / 2}, {0, l / 2}}, spacing));
   put("capsule", std::make_shared<Capsule>(r, l), capsulePoints(r, l, spacing));
   put("truncated cone", std::make_shared<Cone>(r, s, l),
       sweptPoints({{0, -l / 2}, {r, -l / 2}, {s, l / 2}, {0, l / 2}}, spacing));
@@ -247,8 +248,10 @@ TriangleMesh ballMesh(double radius, int n) {
 
 TriangleMesh boxMesh(const Vector3d& size) {
   TriangleMesh mesh;
-  for (int corner = 0; corner < 8; ++corner)
-    mesh.vertices.push_back(Vector3d(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5).cwiseProduct(size));
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d side(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5, corner & 4 ? 0.5 : -0.5);
+    mesh.vertices.push_back(side.cwiseProduct(size));
+  }
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return mesh;

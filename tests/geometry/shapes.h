@@ -26,7 +26,7 @@ class Random {
 struct Specimen {
   std::string name;
   std::shared_ptr<const geometry::Shape> shape;
-  std::vector<Eigen::Vector3d> surface;                            ///< dense: at most `spacing` apart; empty for a plane
+  std::vector<Eigen::Vector3d> surface;                            ///< at most `spacing` apart; none of a plane
   double spacing = 0;
   bool depth_is_exact = true;                                      ///< else a lower bound
 };

@@ -1,6 +1,6 @@
 // Every shape, of random measures, keeps the laws that plugins' shapes are held to, and its distances are those to the
-// nearest of dense points of its surface, which are made from its measures alone.  A broken shape for each law shows that
-// the laws see it.
+// nearest of dense points of its surface, which are made from its measures alone.  A broken shape for each law shows
+// that the laws see it.
 
 #include "tests/geometry/shapes.h"
 
@@ -64,7 +64,8 @@ TEST(Shapes, DistancesAreThoseToTheNearestOfDensePoints) {
         const Vector3d p = random.inCube(0.2);
         const double distance = specimen.shape->distance(p).distance, nearest = toNearest(specimen.surface, p);
         inside += distance < 0;
-        // No surface point is nearer than the distance, and one of the dense ones is at most a spacing from the nearest.
+        // No surface point is nearer than the distance, and one of the dense ones is at most a spacing from the
+        // nearest.
         EXPECT_GE(nearest, std::abs(distance) - 1e-12) << specimen.name << " at " << p.transpose();
         if (specimen.depth_is_exact || distance > 0) {
           EXPECT_LE(nearest, std::abs(distance) + spacing) << specimen.name << " at " << p.transpose();
@@ -101,7 +102,7 @@ TEST(ShapeLaws, SeeWhatIsBroken) {
       {"lipschitz", Spoiled([](const Vector3d&, SignedDistance& d) { d.distance *= 1.1; })},
       {"foot", Spoiled([](const Vector3d& p, SignedDistance& d) { if (p.x() < 0) d.distance *= 0.9; })},
       {"bounding", Spoiled([](const Vector3d&, SignedDistance&) {}, 0.09)},
-      {"support", Spoiled([](const Vector3d& p, SignedDistance& d) { if (p.norm() > 1e3) d.gradient = Vector3d::UnitX(); })},
+      {"support", Spoiled([](const Vector3d& p, SignedDistance& d) { if (p.norm() > 1e3) d.gradient = {1, 0, 0}; })},
       {"convex", Spoiled([](const Vector3d&, SignedDistance& d) { d.distance = -d.distance; })},
       {"determinism", Spoiled([&](const Vector3d&, SignedDistance& d) { d.distance += 1e-15 * (++calls % 7); })},
       {"allocation", Spoiled([&](const Vector3d& p, SignedDistance&) { kept = std::make_unique<Vector3d>(p); })}};
