@@ -5,6 +5,7 @@
 
 #include "conformance/bench.h"
 #include "conformance/laws.h"
+#include "conformance/shape_laws.h"
 #include "conformance/specimen.h"
 #include "dsl/compile.h"
 #include "dsl/diagnostic.h"
@@ -48,7 +49,11 @@ void checkInstance(const dsl::Stack& stack, const control::Registry& registry, c
                    Report& report) {
   const Subject subject{stack, registry, values.row().name, nameOf(values)};
   switch (values.row().kind) {
-    case ElementKind::shape: return checkShape(subject, values, report);
+    case ElementKind::shape: {
+      const auto shape = registry.makeShape(values);
+      for (const ShapeLaw& law : shapeLaws()) judge(subject, law.name, report, [&] { law.check(*shape); });
+      return;
+    }
     case ElementKind::sensor: return checkSensor(subject, report);
     case ElementKind::signal: return checkSignal(subject, report);
     case ElementKind::task: return checkTask(subject, report);

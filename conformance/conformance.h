@@ -33,13 +33,6 @@
 ///   allocation   an update takes no memory.
 ///   determinism  two instances give the same bytes for the same inputs, also after a third one was given others.
 ///
-/// of each shape, at random points in and around it, within its stated error
-///   distance     finite; changes by no more than the way between two points; nothing lies beyond the bounding radius.
-///   gradient     a unit vector; with the distance it leads to the surface.
-///   convexity    of one that says that it is convex: so is its distance.
-///   support      on the surface, and nothing lies farther.
-///   allocation, determinism   of the distance.
-///
 /// of each sensor
 ///   felt         joints keep their number, contacts are at links of the robot, readings are finite or NaN.
 ///   allocation, determinism   of one tick; two instances of one seed feel the same.
@@ -55,6 +48,9 @@
 /// of each signal
 ///   ports        every declared port is served, at one address for the signal's life; scalars are finite.
 ///   allocation, determinism   as for tasks, over scalar ports and log columns.
+///
+/// of each shape, those of the stack's scene or one made from its defaults: finite, gradient, lipschitz, foot,
+/// bounding, support, convex, determinism, allocation, as shape_laws.h tells.
 ///
 /// of each back end, on the tick problems of the stack
 ///   torque       finite, and within the limits where it declares that it honours them.

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "conformance/broken.h"
 #include "conformance/report.h"
 #include "dsl/stack.h"
 #include "framework/control/registry.h"
@@ -18,7 +19,6 @@ struct Subject {
 };
 
 void checkSchema(const control::ElementRow& row, Report& report);
-void checkShape(const Subject& subject, const control::ElementValues& values, Report& report);
 void checkSensor(const Subject& subject, Report& report);
 void checkSignal(const Subject& subject, Report& report);
 void checkTask(const Subject& subject, Report& report);
@@ -27,14 +27,6 @@ void checkController(const Subject& subject, Report& report);
 void checkRecorder(const Subject& subject, Report& report);
 /// The stack's back end.
 void checkBackEnd(const Subject& subject, Report& report);
-
-/// What a law found: broken, or not asked, and why.
-struct Broken {
-  std::string message;
-};
-struct NotAsked {
-  std::string message;
-};
 
 /// Runs one law, which throws `Broken` or `NotAsked`, and adds its finding; any other exception is broken too.
 template <class Law>

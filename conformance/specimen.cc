@@ -41,6 +41,23 @@ std::string numbers(const AttributeRow& row) {
   return text;
 }
 
+std::string guess(const ElementRow& row, const AttributeRow& attribute) {
+  switch (attribute.type) {
+    case ValueType::flag: return "true";
+    case ValueType::integer:
+    case ValueType::real:
+    case ValueType::reals:
+    case ValueType::points: return numbers(attribute);
+    case ValueType::choice: return attribute.choices.front();
+    case ValueType::link: return "palm";
+    case ValueType::links: return "fingers";
+    case ValueType::joints: return "arm";
+    case ValueType::identifier: return "something";
+    default: break;
+  }
+  throw NoGuess{"<" + row.name + "> requires '" + attribute.name + "', and nothing tells what may stand there"};
+}
+
 class Maker {
  public:
   explicit Maker(const control::Registry& registry) : registry_(registry) {
@@ -127,23 +144,6 @@ class Maker {
     object.shapes.push_back(instanceOf(row, "").values);
     object.object.primitives.push_back({registry_.makeShape(object.shapes.back()), Eigen::Isometry3d::Identity()});
     stack_.objects.push_back(std::move(object));
-  }
-
-  std::string guess(const ElementRow& row, const AttributeRow& attribute) {
-    switch (attribute.type) {
-      case ValueType::flag: return "true";
-      case ValueType::integer:
-      case ValueType::real:
-      case ValueType::reals:
-      case ValueType::points: return numbers(attribute);
-      case ValueType::choice: return attribute.choices.front();
-      case ValueType::link: return "palm";
-      case ValueType::links: return "fingers";
-      case ValueType::joints: return "arm";
-      case ValueType::identifier: return "something";
-      default: break;
-    }
-    throw NoGuess{"<" + row.name + "> requires '" + attribute.name + "', and nothing tells what may stand there"};
   }
 
   /// "name.port" of a signal with a port of the attribute's type, which is added.

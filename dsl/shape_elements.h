@@ -4,7 +4,7 @@
 
 namespace tactus::dsl {
 
-/// Adds the built-in shapes: <plane>, <box>, <sphere>, <cylinder>, <capsule>.
+/// Adds the built-in shapes: those of framework/geometry.
 void addShapeElements(control::Registry& registry);
 
 }  // namespace tactus::dsl

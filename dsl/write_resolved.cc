@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "dsl/file_value.h"
 #include "dsl/read_stack.h"
 #include "dsl/stack_document.h"
 #include "dsl/typed_attributes.h"
@@ -65,13 +66,21 @@ bool isWritten(const AttributeRow& row, const control::Value& value, const std::
          });
 }
 
+/// A file that was found beside the stack is named by its full path, so that the resolved stack can stand elsewhere.
+std::string fileText(const control::Value& value) {
+  const std::string file = fileOf(value);
+  return std::filesystem::exists(file) ? file : value.text;
+}
+
 /// Attributes in the order of the row, defaults and classes written out.
 std::string attributesOf(const ElementRow& row, const ElementValues& values,
                          const std::vector<const ElementInstance*>& sources = {}) {
   std::string out;
   for (const AttributeRow& attribute : row.attributes) {
     if (!values.has(attribute.name) || !isWritten(attribute, values.value(attribute.name), sources)) continue;
-    out += attributeText(attribute.name, canonical(attribute, values.text(attribute.name)));
+    const control::Value& value = values.value(attribute.name);
+    const bool is_file = attribute.type == ValueType::file;
+    out += attributeText(attribute.name, is_file ? fileText(value) : canonical(attribute, value.text));
   }
   return out;
 }

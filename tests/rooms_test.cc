@@ -67,6 +67,7 @@ const std::vector<std::pair<std::vector<std::string>, std::set<std::string>>> kF
     {{"Simbody.h", "SimTK", "simbody/", "simmath/"}, {"sim"}},
     {{"tinyxml2.h"}, {"dsl", "apps"}},
     {{"urdf_"}, {"dsl"}},
+    {{"assimp/"}, {"dsl"}},
     {{"coin/", "IpIpopt", "IpTNLP"}, {"plugins"}},
     {{"nlopt"}, {"plugins"}},
     {{"nlohmann/"}, {"dsl", "apps"}},

@@ -14,6 +14,7 @@
 #include "apps/tactus/text.h"
 #include "apps/tactus/tolerances.h"
 #include "apps/tactus/versions.h"
+#include "dsl/file_value.h"
 #include "dsl/model_search.h"
 #include "framework/runtime/file_error.h"
 
@@ -91,14 +92,30 @@ ordered_json provenance(const Session& session, const std::string& reason, Progr
           {"inputs", inputs}};
 }
 
+/// Files that the scene's shapes name, as the resolved stack has them.
+std::vector<std::string> filesOfShapes(const dsl::Stack& stack) {
+  std::vector<std::string> files;
+  for (const dsl::ObjectDescription& object : stack.objects)
+    for (const control::ElementValues& shape : object.shapes)
+      for (const control::AttributeRow& attribute : shape.row().attributes)
+        if (attribute.type == control::ValueType::file && shape.has(attribute.name))
+          files.push_back(dsl::fileOf(shape.value(attribute.name)));
+  return files;
+}
+
 /// The resolved stack without places of this machine, so that a case reads on another: a robot found by its name keeps
-/// the name, one that stands beside the stack is named from the case's folder.
+/// the name; one that stands beside the stack, and files of shapes, are named from the case's folder.
 std::string portableStack(const dsl::Stack& stack, const fs::path& folder) {
   std::string xml = dsl::writeResolved(stack);
   const std::string absolute = fs::absolute(stack.robot_file).string();
   const bool by_name = dsl::findModel(stack.robot_model, stack.file, {}).file.empty();
   const std::string portable = by_name ? stack.robot_model : fs::relative(absolute, folder).string();
   if (const size_t at = xml.find(absolute); at != std::string::npos) xml.replace(at, absolute.size(), portable);
+  for (const std::string& file : filesOfShapes(stack)) {
+    const std::string from_case = fs::relative(file, folder).string();
+    for (size_t at = xml.find(file); at != std::string::npos; at = xml.find(file, at + from_case.size()))
+      xml.replace(at, file.size(), from_case);
+  }
   return xml;
 }
 

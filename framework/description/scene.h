@@ -1,20 +1,17 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "framework/description/place.h"
-#include "framework/geometry/shape.h"
+#include "framework/geometry/compound.h"
 
 /// The world around the robot as plain data.  SI units, world frame W, z up.
 namespace tactus::description {
 
-struct Primitive {
-  std::shared_ptr<const geometry::Shape> shape;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();          ///< in the object frame
-};
+/// Posed in the object frame; geometry::Compound makes one shape of all.
+using Primitive = geometry::PosedShape;
 
 /// How a surface pushes back.  Normal force: Hunt–Crossley, k δ (1 + c δ̇) with δ the depth; friction: bristles.
 struct ContactMaterial {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
-#include <string>
+
+#include "framework/geometry/lengths.h"
 
 namespace tactus::geometry {
 namespace {
@@ -21,11 +21,6 @@ double side(double component) { return std::abs(component) < level ? 0 : std::co
 
 /// How far out the points inside a flat face lie, of the way to its border.
 constexpr double inner = 0.6;
-
-double positive(const char* what, double length) {
-  if (!(length > 0) || !std::isfinite(length)) throw std::invalid_argument(std::string(what) + " is finite and > 0");
-  return length;
-}
 
 /// Distance to a sphere about the origin, with a fixed answer at its centre.
 SignedDistance fromCentre(const Vector3d& offset, double radius, const Vector3d& normal_at_centre) {
