@@ -76,10 +76,23 @@ std::string processor() {
   return info.substr(colon + 2, info.find('\n', colon) - colon - 2);
 }
 
+/// Full paths of the files that the scene's shapes name, as the resolved stack has them.
+std::vector<std::string> filesOfShapes(const dsl::Stack& stack) {
+  std::vector<std::string> files;
+  for (const dsl::ObjectDescription& object : stack.objects)
+    for (const control::ElementValues& shape : object.shapes)
+      for (const control::AttributeRow& attribute : shape.row().attributes)
+        if (attribute.type == control::ValueType::file && shape.has(attribute.name))
+          files.push_back(dsl::fileOf(shape.value(attribute.name)));
+  return files;
+}
+
 ordered_json provenance(const Session& session, const std::string& reason, Program& program) {
   ordered_json inputs = ordered_json::object();
   for (const auto& [file, content] : session.stack().files)
     inputs[fs::path(file).filename().string()] = hashOf(content);
+  for (const std::string& file : filesOfShapes(session.stack()))
+    inputs[fs::path(file).filename().string()] = hashOf(runtime::readFile(file));
   ordered_json plugins = ordered_json::object();
   for (const runtime::LoadedPlugin& plugin : program.plugins().loaded()) plugins[plugin.name] = plugin.version;
   return {{"reason", reason},
@@ -90,17 +103,6 @@ ordered_json provenance(const Session& session, const std::string& reason, Progr
           {"plugins", plugins},
           {"processor", processor()},
           {"inputs", inputs}};
-}
-
-/// Files that the scene's shapes name, as the resolved stack has them.
-std::vector<std::string> filesOfShapes(const dsl::Stack& stack) {
-  std::vector<std::string> files;
-  for (const dsl::ObjectDescription& object : stack.objects)
-    for (const control::ElementValues& shape : object.shapes)
-      for (const control::AttributeRow& attribute : shape.row().attributes)
-        if (attribute.type == control::ValueType::file && shape.has(attribute.name))
-          files.push_back(dsl::fileOf(shape.value(attribute.name)));
-  return files;
 }
 
 /// The resolved stack without places of this machine, so that a case reads on another: a robot found by its name keeps

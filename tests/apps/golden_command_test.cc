@@ -128,6 +128,22 @@ TEST_F(GoldenCommandTest, RecordingKeepsOtherFilesOfTheCase) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
 }
 
+TEST(GoldenCommand, FilesOfShapesAreNamedFromTheCase) {
+  const TemporaryFolder folder;
+  folder.write("wedge.obj", contentOf(TACTUS_SOURCE_DIR "/tests/conformance/every_shape.obj"));
+  const std::string stack = folder.write(
+      "stack.xml",
+      "<stack format='1'><robot model='lwr_4plus'/><scene><object name='wedge' pose='1 0 0'><mesh file='wedge.obj' "
+      "scale='0.001' cell='0.01'/></object></scene><level priority='1'><posture name='rest' joints='arm'/></level>"
+      "<controller backend='null-space'/></stack>");
+  const Outcome recorded =
+      tactus({"golden", "record", folder.file("case"), "--stack", stack, "--duration", "0.01", "--reason", "to see"});
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_THAT(contentOf(folder.file("case/stack.xml")), HasSubstr("file=\"../wedge.obj\""));
+  EXPECT_TRUE(nlohmann::json::parse(contentOf(folder.file("case/provenance.json")))["inputs"].contains("wedge.obj"));
+  EXPECT_EQ(tactus({"golden", "verify", folder.file("case")}).exit_code, 0);
+}
+
 TEST(GoldenCommand, ForeignFolderIsLeftAlone) {
   const TemporaryFolder folder;
   folder.write("thesis.tex", "years of work");
