@@ -31,6 +31,17 @@ const std::string everything = R"(<stack format="1" name="whole">
     <object name="thing" on="table" class="rough"><plane pose="0 0 0.5"/><sphere radius="0.11" pose="0 0 0.125"/>
       <cylinder radius="0.12" length="0.32" pose="0 0 0.375"/>
       <capsule radius="0.13" length="0.33" pose="0 0 0.625"/></object>
+    <object name="drawn"><cone radius="0.051" length="0.116" top-radius="0.022" pose="0 0 0.191"/>
+      <ellipsoid radii="0.1 0.05 0.021" pose="0 0 0.132"/>
+      <torus radius="0.052" tube-radius="0.0121" angle="2.1" pose="0 0 0.133"/>
+      <extrusion outline="0 0; 0.1 0; 0 0.1" length="0.053" pose="0 0 0.134"/>
+      <revolution profile="0 0; 0.04 0; 0 0.05" pose="0 0 0.135"/>
+      <heights rows="0.02 0.03; 0.02 0.05" spacing="0.055 0.04" base="-0.011" cell="0.0155" pose="0 0 0.136"/>
+      <heights file="hills.txt" spacing="0.05 0.04" cell="0.01"/>
+      <mesh file="wedge.obj" scale="0.00123" cell="0.0065" pose="0 0 0.137"/></object>
+    <object name="loose" mobility="held" mass="0.31" inertia="0.001 0.0011 0.0012" centre="0 0 0.014"
+            hold-stiffness="501" hold-damping="16" hold-rotation-stiffness="2.5" hold-rotation-damping="0.03">
+      <sphere radius="0.15"/><at time="0.77" by="0 0 0.17"/></object>
   </scene>
   <signals><test.probe name="a"/></signals>
   <level priority="2" weight="5" strict="false" active="true" active-from="0.1" active-until="0.8" active-ramp="0.2">
@@ -73,14 +84,49 @@ const std::vector<Change> changes{
     {"box/size", "1 1 0.1", "1 1 0.2"},
     {"box/pose", "0.25", "0.26"},
     {"plane/pose", "0 0 0.5\"", "0 0 0.6\""},
-    {"sphere/radius", "0.11", "0.14"},
+    {"sphere/radius", "\"0.11\"", "\"0.14\""},
     {"sphere/pose", "0.125", "0.126"},
     {"cylinder/radius", "0.12\"", "0.14\""},
     {"cylinder/length", "0.32", "0.34"},
     {"cylinder/pose", "0.375", "0.376"},
-    {"capsule/radius", "0.13", "0.14"},
+    {"capsule/radius", "\"0.13\"", "\"0.14\""},
     {"capsule/length", "0.33", "0.34"},
     {"capsule/pose", "0.625", "0.626"},
+    {"cone/radius", "0.051", "0.054"},
+    {"cone/length", "0.116", "0.117"},
+    {"cone/top-radius", "0.022", "0.023"},
+    {"cone/pose", "0.191", "0.291"},
+    {"ellipsoid/radii", "0.021", "0.024"},
+    {"ellipsoid/pose", "0.132", "0.232"},
+    {"torus/radius", "0.052", "0.056"},
+    {"torus/tube-radius", "0.0121", "0.0131"},
+    {"torus/angle", "2.1", "2.2"},
+    {"torus/pose", "0.133", "0.233"},
+    {"extrusion/outline", "0.1 0; 0 0.1", "0.1 0; 0 0.11"},
+    {"extrusion/length", "0.053", "0.057"},
+    {"extrusion/pose", "0.134", "0.234"},
+    {"revolution/profile", "0.04 0; 0 0.05", "0.04 0; 0 0.06"},
+    {"revolution/pose", "0.135", "0.235"},
+    {"heights/rows", "0.02 0.05\"", "0.02 0.06\""},
+    {"heights/file", "hills.txt", "nowhere.txt"},
+    {"heights/spacing", "0.055", "0.056"},
+    {"heights/base", "-0.011", "-0.012"},
+    {"heights/cell", "0.0155", "0.012"},
+    {"heights/pose", "0.136", "0.236"},
+    {"mesh/file", "wedge.obj", "nowhere.obj"},
+    {"mesh/scale", "0.00123", "0.0013"},
+    {"mesh/cell", "0.0065", "0.006"},
+    {"mesh/pose", "0.137", "0.237"},
+    {"object/mobility", "\"held\"", "\"free\""},
+    {"object/mass", "0.31", "0.32"},
+    {"object/inertia", "0.0012\" centre", "0.0013\" centre"},
+    {"object/centre", "0.014", "0.015"},
+    {"object/hold-stiffness", "501", "502"},
+    {"object/hold-damping", "\"16\"", "\"17\""},
+    {"object/hold-rotation-stiffness", "\"2.5\"", "\"2.6\""},
+    {"object/hold-rotation-damping", "\"0.03\"", "\"0.04\""},
+    {"at/time", "\"0.77\"", "\"0.75\""},
+    {"at/by", "0 0 0.17", "0 0 0.18"},
     {"level/priority", "priority=\"2\"", "priority=\"3\""},
     {"level/weight", "weight=\"5\"", "weight=\"6\""},
     {"level/strict", "backend=\"all\"", "backend=\"none\""},       // which refuses strict levels: see below
@@ -110,7 +156,7 @@ const std::vector<Change> changes{
 /// A shape is known by its distances from a few points.
 void write(const geometry::Shape& shape, std::ostream& out) {
   for (const Eigen::Vector3d& p : {Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(-2, 0.1, 0.2), Eigen::Vector3d(0.1, 0.2, -4)})
-    out << shape.distance(p).distance << " ";
+    out << shape.distance(p).distance << " " << shape.error() << " ";
 }
 
 /// Shares of a level over a second.
@@ -127,7 +173,11 @@ void write(const dsl::Stack& stack, std::ostream& out) {
   const description::Scene scene = stack.scene(stack.run.seed);
   for (const description::Object& object : scene.objects) {
     out << "\n" << object.name << "\n" << object.pose.matrix() << "\n" << object.material.stiffness << " "
-        << object.material.dissipation << " " << object.material.friction;
+        << object.material.dissipation << " " << object.material.friction << "\n"
+        << static_cast<int>(object.mobility) << " " << object.mass.mass << " " << object.mass.centre.transpose() << " "
+        << object.mass.inertia.diagonal().transpose() << " " << object.holder.stiffness << " " << object.holder.damping
+        << " " << object.holder.rotation_stiffness << " " << object.holder.rotation_damping;
+    for (const description::Waypoint& waypoint : object.path) out << "\n" << waypoint.time << waypoint.pose.matrix();
     for (const description::Primitive& primitive : object.primitives) {
       out << "\n" << primitive.pose.matrix() << "\n";
       write(*primitive.shape, out);
@@ -159,6 +209,9 @@ std::string effectOf(const std::string& text) {
   std::ostringstream out;
   out.precision(17);
   writeFile("more.xml", "<stack><level priority=\"4\"><test.pull name=\"more\"/></level></stack>");
+  writeFile("hills.txt", "0.02 0.03\n0.02 0.05\n");
+  writeFile("wedge.obj", "v -50 -30 0\nv 50 -30 0\nv 50 30 0\nv -50 30 0\nv 50 -30 40\nv 50 30 40\n"
+                         "f 4 3 2 1\nf 2 3 6 5\nf 1 5 6 4\nf 1 2 5\nf 3 4 6\n");
   writeFile("others.xml", "<stack><level priority=\"4\"><test.pull name=\"other\"/></level></stack>");
   try {
     const dsl::Stack stack = dsl::readStack(writeFile("stack.xml", text), registry, readOptions());

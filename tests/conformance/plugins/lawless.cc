@@ -108,6 +108,7 @@ class Ball final : public geometry::Shape {
   geometry::SignedDistance doDistance(const Eigen::Vector3d& p) const override {
     static long asked = 0;
     const double length = p.norm();
+    if (length == 0) return fault_ == "convexity" ? hollow(Eigen::Vector3d(1e-9, 0, 0)) : geometry::SignedDistance{-0.1, {1, 0, 0}};
     geometry::SignedDistance nearest{length - 0.1, p / length};
     if (fault_ == "distance") nearest = {p.x() > 0 ? length - 0.1 : length - 0.07, p / length};
     if (fault_ == "gradient") nearest.gradient *= -1;
