@@ -63,7 +63,7 @@ class SceneReader {
       if (const auto pose = readPose(element, findings_)) object.object.pose = *pose;
       object.jitter = element.values.vector3("jitter");
       object.object.material = {element.values.real("stiffness"), element.values.real("dissipation"),
-                                element.values.real("friction")};
+                                element.values.real("friction"), element.values.real("rolling")};
       if (element.values.has("on")) object.on = element.values.text("on");
     }
     for (const CheckedElement& child : element.children) addShape(child, object);

@@ -136,6 +136,11 @@ ElementRow objectRow() {
                          {.name = "friction", .type = ValueType::real, .unit = "1",
                           .default_text = formatNumber(material.friction),
                           .description = "Coulomb coefficient μ.", .lower = 0},
+                         {.name = "rolling", .type = ValueType::real, .unit = "m",
+                          .default_text = formatNumber(material.rolling),
+                          .description = "ρ: a torque of up to ρ times the normal force resists rolling and spinning; "
+                                         "0.0001 to 0.001 for hard things.",
+                          .lower = 0},
                          {.name = "mobility", .type = ValueType::choice, .default_text = "fixed",
                           .description = "What decides where it is: `fixed`, its pose; `free`, the forces on it; `held`, "
                                          "these and a spring and damper to its path; `moved`, its path alone, whatever "

@@ -167,6 +167,7 @@ ContactForce::ContactForce(std::vector<Feature> features, std::vector<Collider> 
     }
   }
   bristles_.assign(pairs_.size(), Bristles::Zero());
+  twists_ = bristles_;
   places_.assign(pairs_.size(), Eigen::Matrix<double, most_interior, 1>::Constant(std::nan("")));
   bent_.reserve(pairs_.size());
   touches_.reserve(pairs_.size());
@@ -224,7 +225,6 @@ void ContactForce::touchPair(int pair, const BodyMotion& of_feature, const BodyM
 
   touches_.push_back(Touch{.pair = pair});
   Touch& touch = touches_.back();
-  touch.places.setConstant(std::nan(""));
   for (int i = 0; i < 2; ++i)
     if (has_end[i]) press(ends[i], pair, of_feature, of_collider, h, i, touch);
   int slots[most_interior];
@@ -312,16 +312,32 @@ void ContactForce::press(const Point& point, int pair, const BodyMotion& of_feat
   const double asked_N = friction_W.norm();
   if (asked_N > friction_N) friction_W *= friction_N / asked_N;
 
+  Eigen::Vector3d torque_W = Eigen::Vector3d::Zero();              // of the feature's body on the collider's
+  if (material.rolling > 0 && feature.feeler.radius > 0) {
+    const double rolling_Nm = material.rolling * normal_N;
+    const double twist_stiffness = bristle_stiffness * feature.feeler.radius * feature.feeler.radius;
+    const Eigen::Vector3d turning_W = of_feature.angular_W - of_collider.angular_W;
+    Eigen::Vector3d twist_W = Eigen::Vector3d::Zero();
+    if (stays) twist_W = twists_[pair].col(slot);
+    twist_W += h * (turning_W + of_collider.angular_W.cross(twist_W));
+    const double elastic_Nm = twist_stiffness * twist_W.norm();
+    if (elastic_Nm > rolling_Nm) twist_W *= rolling_Nm / elastic_Nm;
+    torque_W = twist_stiffness * (twist_W + options_.bristle_relaxation * turning_W);
+    const double asked_Nm = torque_W.norm();
+    if (asked_Nm > rolling_Nm) torque_W *= rolling_Nm / asked_Nm;
+    touch.twists.col(slot) = twist_W;
+  }
+
   const Eigen::Vector3d force_W = normal_N * normal_W + friction_W;
   if (feature.body != world_body) {
     BodyWrench& wrench = wrenches_[feature.body];
     wrench.force_W -= force_W;
-    wrench.torque_W -= arm_W.cross(force_W);
+    wrench.torque_W -= arm_W.cross(force_W) + torque_W;
   }
   if (colliders_[c].body != world_body) {
     BodyWrench& wrench = wrenches_[colliders_[c].body];
     wrench.force_W += force_W;
-    wrench.torque_W += other_arm_W.cross(force_W);
+    wrench.torque_W += other_arm_W.cross(force_W) + torque_W;
   }
   touch.bristles.col(slot) = bend_W;
   touch.weight_N += normal_N;
@@ -350,11 +366,13 @@ double ContactForce::exposure(int collider, const Eigen::Vector3d& surface_point
 void ContactForce::commit() {
   for (int pair : bent_) {
     bristles_[pair].setZero();
+    twists_[pair].setZero();
     places_[pair].setConstant(std::nan(""));
   }
   bent_.clear();
   for (const Touch& touch : touches_) {
     bristles_[touch.pair] = touch.bristles;
+    twists_[touch.pair] = touch.twists;
     places_[touch.pair] = touch.places;
     bent_.push_back(touch.pair);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -54,6 +55,9 @@ struct BodyWrench {
 /// a held body does not creep; it turns with the body of the shape.  The bends are the force's own state: `evaluate`
 /// proposes them, `commit` keeps them.
 ///
+/// **Rolling** and spinning of a round feature (radius r > 0) twist a bristle by the angle that the bodies turn against
+/// each other, φ̇ = ω, |κ φ| ≤ ρN with κ = σ₀ r², and feel the torque −κ (φ + relaxation · ω), at most ρN.
+///
 /// **Unions.**  A point whose place on the surface lies inside another shape of the same body is buried: nothing can be
 /// felt there.  β falls smoothly (smoothstep) from 1 at the other's surface to 0 at `burial_fade` below it.  All that is
 /// fixed in the world is one body.
@@ -96,7 +100,9 @@ class ContactForce {
     Eigen::Vector3d normal_force_W = Eigen::Vector3d::Zero();      // Σ, of the feature on the collider
     Eigen::Vector3d friction_force_W = Eigen::Vector3d::Zero();    // Σ, of the feature on the collider
     Bristles bristles = Bristles::Zero();
-    Eigen::Matrix<double, most_interior, 1> places;                // t of interior points; NaN where there is none
+    Bristles twists = Bristles::Zero();                            // rad
+    /// t of interior points; NaN where there is none
+    Eigen::Matrix<double, most_interior, 1> places = Eigen::Matrix<double, most_interior, 1>::Constant(std::nan(""));
   };
   /// Where a collider is and how it moves, in this evaluation.
   struct Posed {
@@ -122,7 +128,7 @@ class ContactForce {
   std::vector<SurfacePair> pairs_;
   std::vector<std::vector<int>> burying_;                          // by collider: those of its body that may lie over it
   std::vector<Posed> posed_;                                       // by collider
-  std::vector<Bristles> bristles_;                                 // committed, by pair
+  std::vector<Bristles> bristles_, twists_;                        // committed, by pair
   std::vector<Eigen::Matrix<double, most_interior, 1>> places_;    // committed, by pair
   std::vector<int> bent_;                                          // pairs whose committed bristles are not zero
   std::vector<Touch> touches_;                                     // of the last evaluation

@@ -54,11 +54,12 @@ std::vector<FreeBody> freeBodies(const description::Scene& scene) {
   return bodies;
 }
 
-/// Of what touches what: Hunt–Crossley springs in series, the dissipation of the softer, the smaller friction.  What is
-/// fixed gives way as its own material says, as links do: they have none.
+/// Of what touches what: Hunt–Crossley springs in series, the dissipation of the softer, the smaller friction, the
+/// greater resistance to rolling.
 description::ContactMaterial together(const description::ContactMaterial& a, const description::ContactMaterial& b) {
   const double stiffness = a.stiffness * b.stiffness / (a.stiffness + b.stiffness);
-  return {stiffness, a.stiffness < b.stiffness ? a.dissipation : b.dissipation, std::min(a.friction, b.friction)};
+  return {stiffness, a.stiffness < b.stiffness ? a.dissipation : b.dissipation, std::min(a.friction, b.friction),
+          std::max(a.rolling, b.rolling)};
 }
 
 constexpr const char* usual_causes =

@@ -13,11 +13,13 @@ namespace tactus::description {
 /// Posed in the object frame; geometry::Compound makes one shape of all.
 using Primitive = geometry::PosedShape;
 
-/// How a surface pushes back.  Normal force: Hunt–Crossley, k δ (1 + c δ̇) with δ the depth; friction: bristles.
+/// How a surface pushes back.  Normal force: Hunt–Crossley, k δ (1 + c δ̇) with δ the depth; friction: bristles, which
+/// slip bends and rolling twists.
 struct ContactMaterial {
   double stiffness = 2000;                                         ///< N/m
   double dissipation = 2;                                          ///< s/m
   double friction = 0.2;                                           ///< Coulomb coefficient μ
+  double rolling = 0;                                              ///< m, ρ: a torque of up to ρN resists rolling and spinning
 };
 
 /// What decides where an object is.

@@ -26,7 +26,7 @@ const std::string everything = R"(<stack format="1" name="whole">
   <plugin name="known"/>
   <robot model="lwr_4plus"><start q="0.1 0.2 0.3 0.4 0.5 0.6 0.7"/></robot>
   <scene gravity="0 0 -9">
-    <object name="table" pose="1 2 3" jitter="0.01 0 0" stiffness="1000" dissipation="3" friction="0.3">
+    <object name="table" pose="1 2 3" jitter="0.01 0 0" stiffness="1000" dissipation="3" friction="0.3" rolling="0.0021">
       <box size="1 1 0.1" pose="0 0 0.25"/></object>
     <object name="thing" on="table" class="rough"><plane pose="0 0 0.5"/><sphere radius="0.11" pose="0 0 0.125"/>
       <cylinder radius="0.12" length="0.32" pose="0 0 0.375"/>
@@ -80,6 +80,7 @@ const std::vector<Change> changes{
     {"object/jitter", "0.01 0 0", "0.02 0 0"},
     {"object/stiffness", "stiffness=\"1000\"", "stiffness=\"1001\""},
     {"object/dissipation", "dissipation=\"3\"", "dissipation=\"4\""},
+    {"object/rolling", "0.0021", "0.0022"},
     {"object/friction", "friction=\"0.3\"", "friction=\"0.4\""},
     {"box/size", "1 1 0.1", "1 1 0.2"},
     {"box/pose", "0.25", "0.26"},
@@ -173,7 +174,8 @@ void write(const dsl::Stack& stack, std::ostream& out) {
   const description::Scene scene = stack.scene(stack.run.seed);
   for (const description::Object& object : scene.objects) {
     out << "\n" << object.name << "\n" << object.pose.matrix() << "\n" << object.material.stiffness << " "
-        << object.material.dissipation << " " << object.material.friction << "\n"
+        << object.material.dissipation << " " << object.material.friction << " "
+        << object.material.rolling << "\n"
         << static_cast<int>(object.mobility) << " " << object.mass.mass << " " << object.mass.centre.transpose() << " "
         << object.mass.inertia.diagonal().transpose() << " " << object.holder.stiffness << " " << object.holder.damping
         << " " << object.holder.rotation_stiffness << " " << object.holder.rotation_damping;
