@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/joint_resistance.h"
+#include "sim/link_wrenches.h"
 #include "sim/simbody_robot.h"
 
 namespace tactus::sim {
@@ -63,8 +64,11 @@ class SimbodyPlant::Implementation {
         resistance_(robot, effectiveInertia(), options.step),
         joint_torque_(robot_.dof()),
         mobility_forces_(robot_.dof(), 0.0),
-        accelerations_(robot_.dof(), 0.0) {
+        accelerations_(robot_.dof(), 0.0),
+        wrenches_(robot, carriers(robot), options.wrench_links, scene.gravity),
+        changes_(motions_.size()) {
     sensed_.contacts.reserve(contact_.capacity());
+    sensed_.wrenches.reserve(options.wrench_links.size());
     realize();
     contact_.evaluate(motions_, options_.step);
     fillSensed();
@@ -80,7 +84,8 @@ class SimbodyPlant::Implementation {
                                 print(options_.step) + " s");
     checkTorque(torque);
     try {
-      for (std::int64_t i = 0; i < static_cast<std::int64_t>(count); ++i) step(torque);
+      const auto steps = static_cast<std::int64_t>(count);
+      for (std::int64_t i = 0; i < steps; ++i) step(torque, i + 1 == steps);
     } catch (...) {
       fillSensed();
       throw;
@@ -112,6 +117,13 @@ class SimbodyPlant::Implementation {
     }
     std::erase_if(features, [](const LinkFeature& feature) { return feature.body == 0; });
     return features;
+  }
+
+  std::vector<LinkWrenches::Carrier> carriers(const description::Robot& robot) const {
+    std::vector<LinkWrenches::Carrier> carriers;
+    for (int link = 0; link < static_cast<int>(robot.links.size()); ++link)
+      carriers.push_back({robot_.carrier(link).getMobilizedBodyIndex(), robot_.poseInCarrier(link)});
+    return carriers;
   }
 
   Eigen::VectorXd checkedStart(const description::Robot& robot, const Eigen::VectorXd& start_q) const {
@@ -177,7 +189,7 @@ class SimbodyPlant::Implementation {
     }
   }
 
-  void step(const Eigen::VectorXd& torque) {
+  void step(const Eigen::VectorXd& torque, bool last) {
     joint_torque_ = torque;
     resistance_.add(q_, qd_, joint_torque_);
     toEigen(mobility_forces_) = joint_torque_;
@@ -192,6 +204,7 @@ class SimbodyPlant::Implementation {
     try {
       robot_.matter().calcAccelerationIgnoringConstraints(state_, mobility_forces_, body_forces_, accelerations_,
                                                           body_accelerations_);
+      if (last) senseWrenches();
       qd_ += options_.step * toEigen(accelerations_);
       q_ += options_.step * qd_;
       checkSpeed();
@@ -208,6 +221,15 @@ class SimbodyPlant::Implementation {
     contact_.commit();
     resistance_.commit();
     contact_.evaluate(motions_, options_.step);
+  }
+
+  /// Of the instant at which a step begins: accelerations, motions and contacts belong together there.
+  void senseWrenches() {
+    if (wrenches_.empty()) return;
+    for (SimTK::MobilizedBodyIndex b(1); b < body_accelerations_.size(); ++b)
+      changes_[b] = {toEigen(body_accelerations_[b][0]), toEigen(body_accelerations_[b][1])};
+    contact_.read(sensed_.contacts);
+    wrenches_.evaluate(motions_, changes_, contact_.wrenches(), sensed_.contacts, sensed_.wrenches);
   }
 
   void takeBack() {
@@ -247,6 +269,8 @@ class SimbodyPlant::Implementation {
   Eigen::VectorXd joint_torque_, last_q_, last_qd_;
   SimTK::Vector mobility_forces_, accelerations_;
   SimTK::Vector_<SimTK::SpatialVec> body_forces_, body_accelerations_;
+  LinkWrenches wrenches_;
+  std::vector<BodyAcceleration> changes_;                          // by mobilized body; Ground rests
   std::int64_t steps_ = 0;
   control::Sensed sensed_;
 };

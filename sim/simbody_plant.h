@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
@@ -14,6 +15,9 @@ struct PlantOptions {
   double step = 0.25e-3;                                           ///< s, semi-explicit Euler
   double velocity_limit = 100;                                     ///< rad/s or m/s; beyond it the state is a runaway
   ContactOptions contact;
+  /// Links, each once, whose wrenches `sense` tells (see link_wrenches.h): as they were when the last step began, none
+  /// before the first.
+  std::vector<int> wrench_links;
 };
 
 /// The robot in its scene, simulated by Simbody (tree, gravity, forward dynamics) with Tactus's own contact force (see

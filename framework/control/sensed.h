@@ -9,7 +9,7 @@ namespace tactus::control {
 /// One touch of a link feature (a capsule) on one primitive of an object.
 struct ContactRecord {
   int link = -1;                                                   ///< index into description::Robot::links
-  int object = -1;                                                 ///< index into description::Scene::objects
+  int object = -1;                                                 ///< index into description::Scene::objects, −1 = not known
   Eigen::Vector3d point_W = Eigen::Vector3d::Zero();               ///< m
   Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();              ///< unit, out of the robot into the object
   double depth = 0;                                                ///< m, > 0 while overlapping
@@ -17,11 +17,19 @@ struct ContactRecord {
   Eigen::Vector3d friction_W = Eigen::Vector3d::Zero();            ///< N, tangential, what the robot does to the object
 };
 
+/// What the rest of the robot does to a link, and all that hangs on it, through the joint above it.
+struct LinkWrench {
+  int link = -1;                                                   ///< index into description::Robot::links
+  Eigen::Vector3d force_L = Eigen::Vector3d::Zero();               ///< N, link axes
+  Eigen::Vector3d moment_L = Eigen::Vector3d::Zero();              ///< N m, link axes, about the link's origin
+};
+
 struct Sensed {
   double time = 0;                                                 ///< s
   Eigen::VectorXd q;                                               ///< rad or m, dof
   Eigen::VectorXd qd;                                              ///< dof
   std::vector<ContactRecord> contacts;                             ///< in the plant's fixed order
+  std::vector<LinkWrench> wrenches;                                ///< of links that sensors ask for, else none
   Eigen::VectorXd readings;                                        ///< of the sensors' ports (see Readings)
 };
 
