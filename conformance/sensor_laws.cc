@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -98,15 +99,17 @@ void checkAllocation(const Subject& subject) {
 std::vector<double> trace(const Subject& subject, unsigned states) {
   SensorBench bench(subject, states);
   std::vector<double> said;
-  const auto add = [&said](const auto& numbers) { said.insert(said.end(), numbers.begin(), numbers.end()); };
+  const auto add = [&said](const auto& numbers) {
+    for (const double number : numbers) said.push_back(std::isnan(number) ? -1e300 : number);
+  };
   for (int k = 0; k < kTicks; ++k) {
     bench.tick();
     add(bench.felt().q);
     add(bench.felt().qd);
-    for (const double reading : bench.felt().readings) said.push_back(std::isnan(reading) ? -1e300 : reading);
+    add(bench.felt().readings);
     for (const control::ContactRecord& contact : bench.felt().contacts) {
       said.push_back(contact.link);
-      said.push_back(contact.force_N);
+      add(std::array{contact.force_N, contact.depth});
       add(contact.point_W);
       add(contact.normal_W);
     }
