@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "framework/control/registry.h"
@@ -18,6 +19,7 @@ namespace {
 constexpr int kFingertipTaxels = 12;
 constexpr int kNodes = 6;
 constexpr double kNodeLength = 0.009, kNodeWidth = 0.005;          // m
+constexpr int kGridCuts = 2;                                       // of a taxel's piece, along and across
 constexpr double kFineCell = 0.001;                                // m, where taxels are not a grid
 constexpr std::size_t kMostTaxels = 4096;                          // of one link
 constexpr double kRounding = 1e-9;
@@ -99,8 +101,12 @@ const CapsuleShape& Layout::capsuleOf(const Link& link) const {
 }
 
 void Layout::addGrid(const Surface& surface, TaxelPlan& plan) const {
-  for (const SurfaceCell& cell : surface.cells(pitch_))
-    if (faces(cell.normal_L)) plan.taxels.push_back({{cell.position_L, cell.normal_L}});
+  plan.cells = surface.cells(pitch_, kGridCuts);
+  std::map<int, std::vector<int>> cells_of;                        // by piece
+  for (int i = 0; i < static_cast<int>(plan.cells.size()); ++i)
+    cells_of[plan.cells[static_cast<std::size_t>(i)].piece].push_back(i);
+  for (const SurfaceCell& piece : surface.cells(pitch_))
+    if (faces(piece.normal_L)) plan.taxels.push_back({{piece.position_L, piece.normal_L}, cells_of[piece.piece]});
 }
 
 void Layout::addCounts(const Link& link, TaxelPlan& plan) const {
@@ -158,7 +164,7 @@ void Layout::addNodes(const Link& link, TaxelPlan& plan) const {
 bool Layout::collects(const Taxel& taxel, const SurfaceCell& cell, const Link& link) const {
   const Eigen::Vector3d apart = cell.position_L - taxel.position_L;
   switch (kind_) {
-    case Kind::tekscan: return faces(cell.normal_L);
+    case Kind::tekscan: return false;                              // has the cells of its piece
     case Kind::positions: return apart.norm() <= 0.5 * pitch_ && cell.normal_L.dot(taxel.normal_L) > 0;
     case Kind::counts: {
       const CapsuleShape& capsule = capsuleOf(link);
@@ -193,7 +199,13 @@ TaxelPlan Layout::plan(const Link& link) const {
   if (plan.taxels.size() > kMostTaxels)
     throw ElementError("pitch", "link '" + link.name + "' would have " + std::to_string(plan.taxels.size()) +
                                     " taxels, and can have " + std::to_string(kMostTaxels) + ": take a larger pitch");
-  plan.cells = surface.cells(kind_ == Kind::tekscan ? 0.5 * pitch_ : std::min(kFineCell, 0.25 * plan.pitch));
+  if (kind_ == Kind::tekscan) return plan;
+  plan.cells = surface.cells(std::min(kFineCell, 0.25 * plan.pitch));
+  assignCells(link, plan);
+  return plan;
+}
+
+void Layout::assignCells(const Link& link, TaxelPlan& plan) const {
   for (int i = 0; i < static_cast<int>(plan.cells.size()); ++i) {
     const SurfaceCell& cell = plan.cells[static_cast<std::size_t>(i)];
     Taxel* nearest = nullptr;
@@ -206,7 +218,6 @@ TaxelPlan Layout::plan(const Link& link) const {
     }
     if (nearest && collects(*nearest, cell, link)) nearest->cells.push_back(i);
   }
-  return plan;
 }
 
 }  // namespace tactus::plugins

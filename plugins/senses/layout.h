@@ -25,7 +25,7 @@ struct TaxelPlan {
 ///
 /// | layout           | taxels                                                       | each collects              |
 /// |------------------|--------------------------------------------------------------|----------------------------|
-/// | `tekscan`        | the pieces of `Surface::cells(pitch)`, 4 mm                  | what is nearest to it      |
+/// | `tekscan`        | the pieces of `Surface::cells(pitch)`, 4 mm                  | its piece                  |
 /// | `counts`         | rows along the straight part, columns around it              | what is nearest to it      |
 /// | `positions`      | given ones, put on the surface                               | what is within pitch/2     |
 /// | `icub-fingertip` | 12 on the round end far from the link's origin               | what is nearest to it      |
@@ -63,6 +63,7 @@ class Layout {
   void addFingertip(const description::Link& link, TaxelPlan& plan) const;
   void addNodes(const description::Link& link, TaxelPlan& plan) const;
   bool collects(const Taxel& taxel, const SurfaceCell& cell, const description::Link& link) const;
+  void assignCells(const description::Link& link, TaxelPlan& plan) const;
 
   Kind kind_;
   int links_;

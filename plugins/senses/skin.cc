@@ -13,7 +13,7 @@ void Skin::registerIn(Registry& registry) {
   ElementRow row;
   row.name = "skin";
   row.description = "Patches of taxels on links: contacts as taxels tell them.";
-  row.source = "Johnson 1985, 4.2 (Hertz); thesis 4.4.4 (contacts from taxels)";
+  row.source = "Johnson 1985, 4.2 (Hertz); thesis 4.4.2 (contacts from taxels)";
   row.attributes = {
       {.name = "links", .type = ValueType::links, .required = true,
        .description = "The links that carry taxels; those without a shape carry none."},

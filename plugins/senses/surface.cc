@@ -42,47 +42,67 @@ Nearest nearestOf(const description::LinkShape& shape, const Eigen::Vector3d& p)
   return std::visit([&](const auto& s) { return nearestOf(s, p); }, shape);
 }
 
-void addCells(const CapsuleShape& capsule, double pitch, int shape, std::vector<SurfaceCell>& cells) {
+/// Appends cells, and counts on the pieces that they are of.
+struct CellList {
+  double pitch;
+  int cuts;
+  int shape = 0, pieces = 0;
+  std::vector<SurfaceCell> cells = {};
+
+  /// Pieces of `pitch` in `length`, at least one.
+  int piecesIn(double length) const { return std::max(1, static_cast<int>(std::lround(length / pitch))); }
+  void add(const Eigen::Vector3d& position_L, const Eigen::Vector3d& normal_L, double area, int piece) {
+    cells.push_back({{position_L, normal_L}, area, shape, pieces + piece});
+  }
+};
+
+void addCells(const CapsuleShape& capsule, CellList& list) {
   const double r = capsule.radius, length = (capsule.to - capsule.from).norm(), meridian = length + pi * r;
   const Eigen::Matrix3d axes = capsuleAxes(capsule);
-  // Height above the pole of `from`, and what of the radius is across the axis, at s along the meridian.
+  // Along the axis from `from`, at s along the meridian, and what of the radius is across the axis there.
   const auto height = [&](double s) {
-    if (s < 0.5 * pi * r) return r - r * std::cos(s / r);
-    if (s < 0.5 * pi * r + length) return r + s - 0.5 * pi * r;
-    return r + length + r * std::sin((s - 0.5 * pi * r - length) / r);
+    if (s < 0.5 * pi * r) return -r * std::cos(s / r);
+    if (s < 0.5 * pi * r + length) return s - 0.5 * pi * r;
+    return length + r * std::sin((s - 0.5 * pi * r - length) / r);
   };
-  const int rings = std::max(1, static_cast<int>(std::lround(meridian / pitch)));
-  for (int k = 0; k < rings; ++k) {
-    const double low = height(meridian * k / rings), high = height(meridian * (k + 1) / rings);
-    const double z = height(meridian * (k + 0.5) / rings) - r;     // from `from` along the axis
-    const double on_axis = std::clamp(z, 0.0, length);
-    const double across = std::sqrt(std::max(0.0, r * r - (z - on_axis) * (z - on_axis)));
-    const int pieces = std::max(1, static_cast<int>(std::lround(2 * pi * across / pitch)));
-    for (int j = 0; j < pieces; ++j) {
-      const double angle = 2 * pi * (j + 0.5) / pieces;
-      const Eigen::Vector3d normal =
-          axes * Eigen::Vector3d(across * std::cos(angle), across * std::sin(angle), z - on_axis) / r;
-      const Eigen::Vector3d position = capsule.from + on_axis * axes.col(2) + r * normal;
-      cells.push_back({{position, normal}, 2 * pi * r * (high - low) / pieces, shape});
+  const auto across = [&](double z) {
+    const double beyond = z - std::clamp(z, 0.0, length);
+    return std::sqrt(std::max(0.0, r * r - beyond * beyond));
+  };
+  const int rings = list.piecesIn(meridian);
+  for (int ring = 0; ring < rings; ++ring) {
+    const int pieces = list.piecesIn(2 * pi * across(height(meridian * (ring + 0.5) / rings)));
+    for (int k = ring * list.cuts; k < (ring + 1) * list.cuts; ++k) {
+      const double step = meridian / (rings * list.cuts);
+      const double z = height(step * (k + 0.5)), on_axis = std::clamp(z, 0.0, length);
+      const double area = 2 * pi * r * (height(step * (k + 1)) - height(step * k)) / (pieces * list.cuts);
+      for (int j = 0; j < pieces * list.cuts; ++j) {
+        const double angle = 2 * pi * (j + 0.5) / (pieces * list.cuts);
+        const Eigen::Vector3d normal =
+            axes * Eigen::Vector3d(across(z) * std::cos(angle), across(z) * std::sin(angle), z - on_axis) / r;
+        list.add(capsule.from + on_axis * axes.col(2) + r * normal, normal, area, j / list.cuts);
+      }
     }
+    list.pieces += pieces;
   }
 }
 
-void addCells(const BoxShape& box, double pitch, int shape, std::vector<SurfaceCell>& cells) {
+void addCells(const BoxShape& box, CellList& list) {
   for (int face = 0; face < 6; ++face) {
     const int out = face / 2, u = (out + 1) % 3, v = (out + 2) % 3;
     const double side = face % 2 ? 1 : -1;
-    const int rows = std::max(1, static_cast<int>(std::lround(box.size[u] / pitch)));
-    const int columns = std::max(1, static_cast<int>(std::lround(box.size[v] / pitch)));
-    for (int i = 0; i < rows; ++i)
-      for (int j = 0; j < columns; ++j) {
+    const int rows = list.piecesIn(box.size[u]), columns = list.piecesIn(box.size[v]);
+    const int fine_rows = rows * list.cuts, fine_columns = columns * list.cuts;
+    for (int i = 0; i < fine_rows; ++i)
+      for (int j = 0; j < fine_columns; ++j) {
         Eigen::Vector3d place;
         place[out] = 0.5 * side * box.size[out];
-        place[u] = ((i + 0.5) / rows - 0.5) * box.size[u];
-        place[v] = ((j + 0.5) / columns - 0.5) * box.size[v];
-        cells.push_back({{box.pose * place, side * box.pose.linear().col(out)},
-                         box.size[u] * box.size[v] / (rows * columns), shape});
+        place[u] = ((i + 0.5) / fine_rows - 0.5) * box.size[u];
+        place[v] = ((j + 0.5) / fine_columns - 0.5) * box.size[v];
+        list.add(box.pose * place, side * box.pose.linear().col(out),
+                 box.size[u] * box.size[v] / (fine_rows * fine_columns), i / list.cuts * columns + j / list.cuts);
       }
+    list.pieces += rows * columns;
   }
 }
 
@@ -115,16 +135,18 @@ double Surface::radiusNear(const Eigen::Vector3d& point_L) const {
   return 0.25 * std::get<BoxShape>(shape).size.minCoeff();
 }
 
-std::vector<SurfaceCell> Surface::cells(double pitch) const {
-  std::vector<SurfaceCell> cells;
-  for (int i = 0; i < static_cast<int>(shapes_.size()); ++i)
-    std::visit([&](const auto& s) { addCells(s, pitch, i, cells); }, shapes_[static_cast<std::size_t>(i)]);
-  std::erase_if(cells, [&](const SurfaceCell& cell) {
+std::vector<SurfaceCell> Surface::cells(double pitch, int cuts) const {
+  CellList list{pitch, cuts};
+  for (const description::LinkShape& shape : shapes_) {
+    std::visit([&](const auto& s) { addCells(s, list); }, shape);
+    ++list.shape;
+  }
+  std::erase_if(list.cells, [&](const SurfaceCell& cell) {
     for (int i = 0; i < static_cast<int>(shapes_.size()); ++i)
       if (i != cell.shape && nearestOf(shapes_[static_cast<std::size_t>(i)], cell.position_L).distance < 0) return true;
     return false;
   });
-  return cells;
+  return std::move(list.cells);
 }
 
 }  // namespace tactus::plugins

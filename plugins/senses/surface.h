@@ -17,6 +17,7 @@ struct SurfacePoint {
 struct SurfaceCell : SurfacePoint {
   double area = 0;                                                 ///< m²
   int shape = 0;                                                   ///< index into the link's shapes
+  int piece = 0;                                                   ///< of the pieces before they are cut further
 };
 
 /// The surface of a link: of the union of its shapes.
@@ -26,7 +27,8 @@ struct SurfaceCell : SurfacePoint {
 ///   (l + πr)/n, n = round((l + πr)/pitch), and each ring of radius ρ into round(2πρ/pitch) equal pieces, at least one;
 ///   a ring's area is 2πr times its height along the axis (Archimedes);
 /// - a box into equal rectangles on each face.
-/// Pieces whose middle lies inside another shape of the link are left out.
+/// With `cuts` each piece is cut further into cuts by cuts cells.  Cells whose middle lies inside another shape of the
+/// link are left out.
 class Surface {
  public:
   explicit Surface(const description::Link& link) : shapes_(link.shapes) {}
@@ -35,7 +37,7 @@ class Surface {
   const std::vector<description::LinkShape>& shapes() const { return shapes_; }
   /// The place of the surface that is nearest to a point, of the shape whose surface is nearest to it.
   SurfacePoint nearest(const Eigen::Vector3d& point_L) const;
-  std::vector<SurfaceCell> cells(double pitch) const;
+  std::vector<SurfaceCell> cells(double pitch, int cuts = 1) const;
   /// m, how round it is there: the capsule's radius, a quarter of a box's shortest edge.
   double radiusNear(const Eigen::Vector3d& point_L) const;
 

@@ -28,11 +28,11 @@ struct TaxelContact {
 ///
 /// **Reading.**  Taxels of one link are neighbours when they are no farther apart than `adjacency` times the pitch.
 /// Active ones, above 0, that hang together by neighbours are one contact: its force is their sum, its place the
-/// nearest on the surface to their centre weighted by force, its normal that of the surface there (thesis 4.4.4, with
-/// clusters instead of the whole link).  Clusters of fewer than `min_taxels`, or weaker than `min_force`, are none.
-/// They come in the order of their first taxels.  So two contacts are told apart when some taxels between them are
-/// silent: surely, on a grid, from 6σ + (adjacency + 1.6)·pitch
-/// on: twice the footprint, half a taxel on either side, and a gap.
+/// nearest on the surface to their centre weighted by force, its normal that of the surface there (thesis 4.4.2,
+/// experiment 4, with clusters instead of the whole link).  Clusters of fewer than `min_taxels`, or weaker than
+/// `min_force`, are none.  They come in the order of their first taxels.  So two contacts are told apart when taxels
+/// between them are silent: surely, on a grid, from 6σ + (adjacency + 1.6)·pitch on, which is twice the footprint, half
+/// a taxel on either side, and a gap.
 ///
 /// Takes no memory after construction.
 class TaxelPatch {
