@@ -1,4 +1,6 @@
+#include <array>
 #include <cmath>
+#include <random>
 
 #include "conformance/allocation_count.h"
 #include "conformance/laws.h"
@@ -12,29 +14,46 @@ namespace {
 constexpr int kTicks = 16 * kStretch;
 constexpr std::uint64_t kSeed = 1;
 
-/// The sensor alone, told what there is at random states.
+/// One sensor of the stack, told what there is at random states: others read random numbers.
 class SensorBench {
  public:
   SensorBench(const Subject& subject, unsigned states)
       : bench_(subject.stack, subject.registry), states_(subject.stack, states) {
     auto sensors = dsl::makeSensors(subject.stack, subject.registry, subject.stack.scene(kSeed), kSeed);
-    for (runtime::NamedSensor& named : sensors)
-      if (named.name == subject.name) sensor_ = std::move(named);
-    int count = 0;
-    for (const control::ReadingRow& row : sensor_.rows) count += row.count;
+    for (runtime::NamedSensor& named : sensors) {
+      int count = 0;
+      for (const control::ReadingRow& row : named.rows) count += row.count;
+      if (named.name == subject.name) {
+        first_ = readings_;
+        count_ = count;
+        sensor_ = std::move(named);
+      }
+      readings_ += count;
+    }
     felt_.contacts.reserve(control::SensingGuard::contact_capacity);
-    felt_.readings.setZero(count);
+    felt_.readings.setZero(readings_);
+    for (const int link : sensor_.sensor->wrenchLinks()) {
+      control::LinkWrench wrench;
+      wrench.link = link;
+      bench_.sensed.wrenches.push_back(wrench);
+    }
   }
 
   void tick() {
     states_.next(bench_);
+    const auto random = [this] { return std::uniform_real_distribution<double>(-5, 5)(random_); };
+    for (control::LinkWrench& wrench : bench_.sensed.wrenches) {
+      for (double& number : wrench.force_L) number = random();
+      for (double& number : wrench.moment_L) number = random();
+    }
     const control::Sensed& truth = bench_.sensed;
     felt_.time = truth.time;
     felt_.q = truth.q;
     felt_.qd = truth.qd;
     felt_.contacts.assign(truth.contacts.begin(), truth.contacts.end());
+    for (double& reading : felt_.readings) reading = random();
     const long before = allocationCount();
-    sensor_.sensor->sense(truth, felt_, felt_.readings);
+    sensor_.sensor->sense(truth, felt_, felt_.readings.segment(first_, count_));
     allocations_ = allocationCount() - before;
     bench_.endTick();
   }
@@ -48,6 +67,9 @@ class SensorBench {
   States states_;
   runtime::NamedSensor sensor_;
   control::Sensed felt_;
+  int readings_ = 0;                                               // of all sensors
+  int first_ = 0, count_ = 0;                                      // of this one
+  std::mt19937 random_{1};
   long allocations_ = 0;
 };
 
@@ -77,15 +99,17 @@ void checkAllocation(const Subject& subject) {
 std::vector<double> trace(const Subject& subject, unsigned states) {
   SensorBench bench(subject, states);
   std::vector<double> said;
-  const auto add = [&said](const auto& numbers) { said.insert(said.end(), numbers.begin(), numbers.end()); };
+  const auto add = [&said](const auto& numbers) {
+    for (const double number : numbers) said.push_back(std::isnan(number) ? -1e300 : number);
+  };
   for (int k = 0; k < kTicks; ++k) {
     bench.tick();
     add(bench.felt().q);
     add(bench.felt().qd);
-    for (const double reading : bench.felt().readings) said.push_back(std::isnan(reading) ? -1e300 : reading);
+    add(bench.felt().readings);
     for (const control::ContactRecord& contact : bench.felt().contacts) {
       said.push_back(contact.link);
-      said.push_back(contact.force_N);
+      add(std::array{contact.force_N, contact.depth});
       add(contact.point_W);
       add(contact.normal_W);
     }

@@ -116,8 +116,9 @@ class PartMaker {
 
   std::vector<runtime::NamedSensor> makeSensors(const description::Scene& scene, std::uint64_t seed) {
     std::vector<runtime::NamedSensor> sensors;
+    std::vector<control::ReadingRow> rows;
     for (const ElementInstance& element : stack_.sensors) {
-      const control::SensorContext context(contextOf(element, noPorts), scene, control::seedOf(seed, element.name));
+      const control::SensorContext context(contextOf(element, noPorts), scene, control::seedOf(seed, element.name), rows);
       auto sensor = make(element, [&] { return registry_.makeSensor(context); });
       if (!sensor) continue;
       runtime::NamedSensor named{element.name, std::move(*sensor), {}};
@@ -130,6 +131,7 @@ class PartMaker {
                             std::to_string(count) + " numbers");
         named.rows.push_back({element.name, port.name, std::max(1, count), scalar});
       }
+      rows.insert(rows.end(), named.rows.begin(), named.rows.end());
       sensors.push_back(std::move(named));
     }
     return sensors;

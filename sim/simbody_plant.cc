@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/joint_resistance.h"
+#include "sim/link_wrenches.h"
 #include "sim/object_path.h"
 #include "sim/simbody_robot.h"
 
@@ -86,8 +87,11 @@ class SimbodyPlant::Implementation {
         joint_torque_(robot_.dof()),
         mobility_forces_(state_.getNU(), 0.0),
         accelerations_(state_.getNU(), 0.0),
-        last_free_(free_) {
+        last_free_(free_),
+        wrenches_(robot, carriers(robot), options.wrench_links, scene.gravity),
+        changes_(motions_.size()) {
     sensed_.contacts.reserve(contact_.capacity());
+    sensed_.wrenches.reserve(options.wrench_links.size());
     realize();
     contact_.evaluate(motions_, options_.step);
     fillSensed();
@@ -104,7 +108,8 @@ class SimbodyPlant::Implementation {
                                 print(options_.step) + " s");
     checkTorque(torque);
     try {
-      for (std::int64_t i = 0; i < static_cast<std::int64_t>(count); ++i) step(torque);
+      const auto steps = static_cast<std::int64_t>(count);
+      for (std::int64_t i = 0; i < steps; ++i) step(torque, i + 1 == steps);
     } catch (...) {
       fillSensed();
       throw;
@@ -225,6 +230,13 @@ class SimbodyPlant::Implementation {
       }
   }
 
+  std::vector<LinkWrenches::Carrier> carriers(const description::Robot& robot) const {
+    std::vector<LinkWrenches::Carrier> carriers;
+    for (int link = 0; link < static_cast<int>(robot.links.size()); ++link)
+      carriers.push_back({robot_.carrier(link).getMobilizedBodyIndex(), robot_.poseInCarrier(link)});
+    return carriers;
+  }
+
   Eigen::VectorXd checkedStart(const description::Robot& robot, const Eigen::VectorXd& start_q) const {
     constexpr double rounding = 1e-9;
     if (start_q.size() != robot_.dof())
@@ -320,7 +332,7 @@ class SimbodyPlant::Implementation {
     return wrench;
   }
 
-  void step(const Eigen::VectorXd& torque) {
+  void step(const Eigen::VectorXd& torque, bool last) {
     joint_torque_ = torque;
     resistance_.add(q_, qd_, joint_torque_);
     toEigen(mobility_forces_).head(robot_.dof()) = joint_torque_;
@@ -343,6 +355,7 @@ class SimbodyPlant::Implementation {
     try {
       robot_.matter().calcAccelerationIgnoringConstraints(state_, mobility_forces_, body_forces_, accelerations_,
                                                           body_accelerations_);
+      if (last) senseWrenches();
       qd_ += options_.step * toEigen(accelerations_).head(robot_.dof());
       q_ += options_.step * qd_;
       stepFreeBodies();
@@ -375,6 +388,15 @@ class SimbodyPlant::Implementation {
         body.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(angle, body.angular_W.normalized())) * body.rotation;
       body.rotation.normalize();
     }
+  }
+
+  /// Of the instant at which a step begins: accelerations, motions and contacts belong together there.
+  void senseWrenches() {
+    if (wrenches_.empty()) return;
+    for (SimTK::MobilizedBodyIndex b(1); b < body_accelerations_.size(); ++b)
+      changes_[b] = {toEigen(body_accelerations_[b][0]), toEigen(body_accelerations_[b][1])};
+    contact_.read(sensed_.contacts);
+    wrenches_.evaluate(motions_, changes_, contact_.wrenches(), sensed_.contacts, sensed_.wrenches);
   }
 
   void takeBack() {
@@ -440,6 +462,8 @@ class SimbodyPlant::Implementation {
   SimTK::Vector_<SimTK::SpatialVec> body_forces_, body_accelerations_;
   std::vector<FreeState> last_free_;
   std::int64_t steps_ = 0, last_steps_ = 0;
+  LinkWrenches wrenches_;
+  std::vector<BodyAcceleration> changes_;                          // by mobilized body; Ground rests
   control::Sensed sensed_;
 };
 

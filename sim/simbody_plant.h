@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
@@ -15,6 +16,9 @@ struct PlantOptions {
   double step = 0.25e-3;                                           ///< s, semi-explicit Euler
   double velocity_limit = 100;                ///< rad/s or m/s, of joints and places; beyond it the state is a runaway
   ContactOptions contact;
+  /// Links, each once, whose wrenches `sense` tells (see link_wrenches.h): as they were when the last step began, none
+  /// before the first.
+  std::vector<int> wrench_links;
 };
 
 /// The robot in its scene, simulated by Simbody (tree, free bodies, gravity, forward dynamics) with Tactus's own contact

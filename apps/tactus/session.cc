@@ -16,9 +16,11 @@ namespace {
 std::unique_ptr<runtime::SensingPlant> makePlant(const dsl::Stack& stack, const control::Registry& registry,
                                                  const description::Scene& scene) {
   try {
+    auto sensors = dsl::makeSensors(stack, registry, scene, stack.run.seed);
+    sim::PlantOptions options;
+    options.wrench_links = runtime::wrenchLinks(sensors);
     return std::make_unique<runtime::SensingPlant>(
-        std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q),
-        dsl::makeSensors(stack, registry, scene, stack.run.seed));
+        std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q, options), std::move(sensors));
   } catch (const runtime::PlantError& error) {
     dsl::Diagnostic diagnostic;
     diagnostic.code = dsl::code::unfit_for_dynamics.id;

@@ -13,6 +13,7 @@
 #include "framework/control/element_values.h"
 #include "framework/control/level_controller.h"
 #include "framework/control/observer.h"
+#include "framework/control/readings.h"
 #include "framework/control/sensor.h"
 #include "framework/control/signal.h"
 #include "framework/control/task.h"
@@ -91,10 +92,12 @@ class BuildContext {
 
 /// What the factory of a sensor may look at.  A sensor reads no ports.
 struct SensorContext : BuildContext {
-  SensorContext(BuildContext context, const description::Scene& scene, std::uint64_t seed)
-      : BuildContext(std::move(context)), scene(scene), seed(seed) {}
+  SensorContext(BuildContext context, const description::Scene& scene, std::uint64_t seed,
+                std::vector<ReadingRow> before = {})
+      : BuildContext(std::move(context)), scene(scene), seed(seed), before(std::move(before)) {}
   const description::Scene& scene;                                 ///< as the run's seed drew it
   std::uint64_t seed;                                              ///< its own, of the run's seed and its name
+  std::vector<ReadingRow> before;                                  ///< of sensors before it: so felt.readings begin
 };
 
 /// What the factory of a recorder may look at; ports are those of the controller's signals.

@@ -25,11 +25,19 @@ struct ObjectMotion {
   Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();              ///< m/s, of the frame's origin
 };
 
+/// What the rest of the robot does to a link, and all that hangs on it, through the joint above it.
+struct LinkWrench {
+  int link = -1;                                                   ///< index into description::Robot::links
+  Eigen::Vector3d force_L = Eigen::Vector3d::Zero();               ///< N, link axes
+  Eigen::Vector3d moment_L = Eigen::Vector3d::Zero();              ///< N m, link axes, about the link's origin
+};
+
 struct Sensed {
   double time = 0;                                                 ///< s
   Eigen::VectorXd q;                                               ///< rad or m, dof
   Eigen::VectorXd qd;                                              ///< dof
   std::vector<ContactRecord> contacts;                             ///< in the plant's fixed order
+  std::vector<LinkWrench> wrenches;                                ///< of links that sensors ask for, else none
   Eigen::VectorXd readings;                                        ///< of the sensors' ports (see Readings)
 };
 

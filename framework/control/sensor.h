@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "framework/control/element_table.h"
 #include "framework/control/sensed.h"
 
@@ -23,6 +25,9 @@ class Sensor {
   }
   /// Numbers behind a port, fixed for its life; as it stands, the dimension that the row says.
   virtual int count(const PortRow& port) const { return port.dimension; }
+  /// Links, indices into description::Robot::links, whose LinkWrench it reads in `truth`.  A plant that cannot tell
+  /// it, or not yet, leaves it out.
+  virtual std::vector<int> wrenchLinks() const { return {}; }
 
  private:
   virtual void doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) = 0;

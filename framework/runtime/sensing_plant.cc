@@ -1,5 +1,7 @@
 #include "framework/runtime/sensing_plant.h"
 
+#include <set>
+
 #include "framework/control/element_values.h"
 #include "framework/control/sensing_guard.h"
 #include "framework/runtime/part_error.h"
@@ -18,6 +20,13 @@ int countOf(const std::vector<control::ReadingRow>& rows) {
 }
 
 }  // namespace
+
+std::vector<int> wrenchLinks(const std::vector<NamedSensor>& sensors) {
+  std::set<int> links;
+  for (const NamedSensor& named : sensors)
+    for (const int link : named.sensor->wrenchLinks()) links.insert(link);
+  return {links.begin(), links.end()};
+}
 
 SensingPlant::SensingPlant(std::unique_ptr<Plant> plant, std::vector<NamedSensor> sensors)
     : plant_(std::move(plant)), sensors_(std::move(sensors)) {

@@ -16,6 +16,9 @@ struct NamedSensor {
   std::vector<control::ReadingRow> rows;                           ///< of its ports, in their order
 };
 
+/// Links whose wrenches the sensors read, rising, each once.
+std::vector<int> wrenchLinks(const std::vector<NamedSensor>& sensors);
+
 /// A plant felt through sensors: `sense` is what they make of it, `truth` what there is.
 class SensingPlant final : public Plant {
  public:
