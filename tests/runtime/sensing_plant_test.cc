@@ -51,6 +51,25 @@ TEST(SensingPlant, WithoutSensorsIsThePlant) {
   EXPECT_EQ(&plant.sense(), &plant.truth());
 }
 
+/// Reads the wrenches of links.
+class Wrist final : public control::Sensor {
+ public:
+  explicit Wrist(std::vector<int> links) : links_(std::move(links)) {}
+  std::vector<int> wrenchLinks() const override { return links_; }
+
+ private:
+  void doSense(const control::Sensed&, control::Sensed&, Eigen::Ref<Eigen::VectorXd>) override {}
+  std::vector<int> links_;
+};
+
+TEST(SensingPlant, AsksForEachWrenchOnce) {
+  std::vector<NamedSensor> sensors;
+  sensors.push_back({"left", std::make_unique<Wrist>(std::vector{7, 3}), {}});
+  sensors.push_back({"shift", std::make_unique<Shift>(1), {}});
+  sensors.push_back({"right", std::make_unique<Wrist>(std::vector{3, 5}), {}});
+  EXPECT_EQ(wrenchLinks(sensors), (std::vector{3, 5, 7}));
+}
+
 TEST(SensingPlant, NamesTheSensorThatThrows) {
   const auto plant = shifted();
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
