@@ -68,6 +68,11 @@ void Bench::tick() {
   endTick();
 }
 
+void Bench::archive(control::Archive& archive) {
+  archive("controller", *controller_);
+  archive("sensed", sensed);
+}
+
 Bench::TaskOnBench& Bench::taskNamed(std::string_view name) {
   for (TaskOnBench& on_bench : tasks_)
     if (on_bench.name == name) return on_bench;

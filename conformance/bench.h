@@ -47,6 +47,8 @@ class Bench {
 
   /// All signals in their order, the controllers of levels, then all tasks; time then goes on by a period.
   void tick();
+  /// Signals, controllers of levels and tasks, and what the next tick is told.
+  void archive(control::Archive& archive);
 
   const dynamics::DynamicsCache& robot() const { return cache_; }  ///< at the state of the last tick
   const control::TickTask& rows(std::string_view task) const;

@@ -32,14 +32,16 @@
 ///                vertical and moved: the same joint torques JᵀF, and JᵀJ: the same rows up to their axes.
 ///   allocation   an update takes no memory.
 ///   determinism  two instances give the same bytes for the same inputs, also after a third one was given others.
+///   state        an instance that went another way and is then restored from one in the middle of its run goes on as
+///                that one does, to the byte: its doArchive names all that it carries.
 ///
 /// of each sensor
 ///   felt         joints keep their number, contacts are at links of the robot, readings are finite or NaN.
-///   allocation, determinism   of one tick; two instances of one seed feel the same.
+///   allocation, determinism, state   of one tick; two instances of one seed feel the same.
 ///
 /// of each controller
 ///   tasks        it owns one; each keeps the laws of tasks, under its full name.
-///   allocation, determinism   of its update; of its columns and the forces of its tasks.
+///   allocation, determinism, state   of its update; of its columns and the forces of its tasks.
 ///
 /// of each recorder
 ///   files        it writes what it writes into the run folder, and throws nothing.
@@ -47,7 +49,7 @@
 ///
 /// of each signal
 ///   ports        every declared port is served, at one address for the signal's life; scalars are finite.
-///   allocation, determinism   as for tasks, over scalar ports and log columns.
+///   allocation, determinism, state   as for tasks, over scalar ports and log columns.
 ///
 /// of each shape, those of the stack's scene or one made from its defaults: finite, gradient, lipschitz, foot,
 /// bounding, support, convex, determinism, allocation, as shape_laws.h tells.

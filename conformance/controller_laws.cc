@@ -3,6 +3,7 @@
 #include "conformance/allocation_count.h"
 #include "conformance/laws.h"
 #include "conformance/states.h"
+#include "conformance/take_over.h"
 
 namespace tactus::conformance {
 namespace {
@@ -16,14 +17,12 @@ const control::Level& levelOf(const Bench& bench, const std::string& name) {
 }
 
 /// What a controller tells in a run of random states: its columns and the forces of its tasks.
-std::vector<double> trace(const Subject& subject, unsigned seed) {
-  Bench bench(subject.stack, subject.registry);
-  States states(subject.stack, seed);
+std::vector<double> trace(const Subject& subject, Bench& bench, States& states, int ticks) {
   const control::Level& level = levelOf(bench, subject.name);
   std::vector<control::LogColumn> columns;
   level.owner.controller->columns(columns);
   std::vector<double> said;
-  for (int k = 0; k < kTicks; ++k) {
+  for (int k = 0; k < ticks; ++k) {
     states.next(bench);
     bench.tick();
     for (const control::LogColumn& column : columns) said.push_back(*column.value);
@@ -31,6 +30,23 @@ std::vector<double> trace(const Subject& subject, unsigned seed) {
       for (const double force : bench.rows(owned.name).F()) said.push_back(force);
   }
   return said;
+}
+
+std::vector<double> trace(const Subject& subject, unsigned seed) {
+  Bench bench(subject.stack, subject.registry);
+  States states(subject.stack, seed);
+  return trace(subject, bench, states, kTicks);
+}
+
+void checkState(const Subject& subject) {
+  Bench goes_on(subject.stack, subject.registry), restored(subject.stack, subject.registry);
+  States states(subject.stack, 2), others(subject.stack, 5);
+  trace(subject, goes_on, states, kTicks / 2);
+  trace(subject, restored, others, 3 * kStretch);
+  takeOver(goes_on, restored);
+  States again = states;
+  if (trace(subject, goes_on, states, kTicks / 2) != trace(subject, restored, again, kTicks / 2))
+    throw Broken{kArchivesTooLittle};
 }
 
 void checkDeterminism(const Subject& subject) {
@@ -70,6 +86,7 @@ void checkController(const Subject& subject, Report& report) {
   if (report.findings.back().outcome == Outcome::broken) return;
   judge(subject, "allocation", report, [&] { checkAllocation(subject); });
   judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
+  judge(subject, "state", report, [&] { checkState(subject); });
   checkTasks(subject, report);
 }
 

@@ -5,6 +5,7 @@
 #include "conformance/allocation_count.h"
 #include "conformance/laws.h"
 #include "conformance/states.h"
+#include "conformance/take_over.h"
 #include "dsl/compile.h"
 #include "framework/control/sensing_guard.h"
 
@@ -61,6 +62,19 @@ class SensorBench {
   int links() const { return static_cast<int>(bench_.robot().model().frames().size()); }
   int dof() const { return bench_.robot().dof(); }
   long allocations() const { return allocations_; }
+  void tick(int times) {
+    for (int k = 0; k < times; ++k) tick();
+  }
+  void archive(control::Archive& archive) {
+    archive("bench", bench_);
+    archive("sensor", *sensor_.sensor);
+  }
+  /// Goes on where another one stands.
+  void goOnAs(SensorBench& other) {
+    takeOver(other, *this);
+    states_ = other.states_;
+    random_ = other.random_;
+  }
 
  private:
   Bench bench_;
@@ -96,13 +110,12 @@ void checkAllocation(const Subject& subject) {
   }
 }
 
-std::vector<double> trace(const Subject& subject, unsigned states) {
-  SensorBench bench(subject, states);
+std::vector<double> trace(SensorBench& bench, int ticks = kTicks) {
   std::vector<double> said;
   const auto add = [&said](const auto& numbers) {
     for (const double number : numbers) said.push_back(std::isnan(number) ? -1e300 : number);
   };
-  for (int k = 0; k < kTicks; ++k) {
+  for (int k = 0; k < ticks; ++k) {
     bench.tick();
     add(bench.felt().q);
     add(bench.felt().qd);
@@ -117,6 +130,19 @@ std::vector<double> trace(const Subject& subject, unsigned states) {
   return said;
 }
 
+std::vector<double> trace(const Subject& subject, unsigned states) {
+  SensorBench bench(subject, states);
+  return trace(bench);
+}
+
+void checkState(const Subject& subject) {
+  SensorBench goes_on(subject, 2), restored(subject, 5);
+  goes_on.tick(kTicks / 2);
+  restored.tick(3 * kStretch);
+  restored.goOnAs(goes_on);
+  if (trace(goes_on, kTicks / 2) != trace(restored, kTicks / 2)) throw Broken{kArchivesTooLittle};
+}
+
 void checkDeterminism(const Subject& subject) {
   const std::vector<double> first = trace(subject, 2);
   trace(subject, 5);
@@ -129,6 +155,7 @@ void checkSensor(const Subject& subject, Report& report) {
   judge(subject, "felt", report, [&] { checkFelt(subject); });
   judge(subject, "allocation", report, [&] { checkAllocation(subject); });
   judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
+  judge(subject, "state", report, [&] { checkState(subject); });
 }
 
 }  // namespace tactus::conformance

@@ -4,6 +4,7 @@
 #include "conformance/allocation_count.h"
 #include "conformance/laws.h"
 #include "conformance/states.h"
+#include "conformance/take_over.h"
 
 namespace tactus::conformance {
 namespace {
@@ -32,6 +33,14 @@ class SignalBench {
     return {};
   }
   long allocations() const { return allocations_; }
+  void tick(int times) {
+    for (int k = 0; k < times; ++k) tick();
+  }
+  /// Goes on where another one stands.
+  void goOnAs(SignalBench& other) {
+    takeOver(other.bench_, bench_);
+    states_ = other.states_;
+  }
 
  private:
   Bench bench_;
@@ -71,12 +80,11 @@ void checkAllocation(const Subject& subject) {
   }
 }
 
-std::vector<double> trace(const Subject& subject, unsigned seed) {
-  SignalBench bench(subject, seed);
+std::vector<double> trace(SignalBench& bench, int ticks = kTicks) {
   std::vector<control::LogColumn> columns;
   bench.signal().columns(columns);
   std::vector<double> said;
-  for (int k = 0; k < kTicks; ++k) {
+  for (int k = 0; k < ticks; ++k) {
     bench.tick();
     for (const control::PortRow& port : bench.ports())
       if (isScalar(port)) said.push_back(*static_cast<const double*>(bench.signal().port(port.name)));
@@ -85,10 +93,23 @@ std::vector<double> trace(const Subject& subject, unsigned seed) {
   return said;
 }
 
+std::vector<double> trace(const Subject& subject, unsigned seed) {
+  SignalBench bench(subject, seed);
+  return trace(bench);
+}
+
 void checkDeterminism(const Subject& subject) {
   const std::vector<double> first = trace(subject, 2);
   trace(subject, 5);
   if (first != trace(subject, 2)) throw Broken{"a second instance gave other numbers for the same inputs"};
+}
+
+void checkState(const Subject& subject) {
+  SignalBench goes_on(subject, 2), restored(subject, 5);
+  goes_on.tick(kTicks / 2);
+  restored.tick(3 * kStretch);
+  restored.goOnAs(goes_on);
+  if (trace(goes_on, kTicks / 2) != trace(restored, kTicks / 2)) throw Broken{kArchivesTooLittle};
 }
 
 }  // namespace
@@ -98,6 +119,7 @@ void checkSignal(const Subject& subject, Report& report) {
   if (report.findings.back().outcome == Outcome::broken) return;   // nobody can read them
   judge(subject, "allocation", report, [&] { checkAllocation(subject); });
   judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
+  judge(subject, "state", report, [&] { checkState(subject); });
 }
 
 }  // namespace tactus::conformance

@@ -5,6 +5,7 @@
 #include "conformance/allocation_count.h"
 #include "conformance/laws.h"
 #include "conformance/states.h"
+#include "conformance/take_over.h"
 
 namespace tactus::conformance {
 namespace {
@@ -56,6 +57,11 @@ class TaskBench {
   Eigen::VectorXd torque() const { return rows().J().transpose() * rows().F(); }
   long allocations() const { return allocations_; }                // of the last update
   const Bench& bench() const { return bench_; }
+  /// Goes on where another one stands.
+  void goOnAs(TaskBench& other) {
+    takeOver(other.bench_, bench_);
+    states_ = other.states_;
+  }
 
  private:
   Bench bench_;
@@ -227,13 +233,12 @@ void checkAllocation(const Subject& subject) {
   }
 }
 
-/// Everything that the task said, in all ticks.
-std::vector<double> trace(const Subject& subject, unsigned seed) {
-  TaskBench bench(subject, seed);
+/// Everything that the task says in so many ticks.
+std::vector<double> trace(TaskBench& bench, int ticks = kTicks) {
   std::vector<control::LogColumn> columns;
   bench.task().columns(columns);
   std::vector<double> said;
-  for (int k = 0; k < kTicks; ++k) {
+  for (int k = 0; k < ticks; ++k) {
     bench.tick();
     const TickTask& rows = bench.rows();
     said.push_back(rows.rows);
@@ -248,12 +253,25 @@ std::vector<double> trace(const Subject& subject, unsigned seed) {
   return said;
 }
 
+std::vector<double> trace(const Subject& subject, unsigned seed) {
+  TaskBench bench(subject, seed);
+  return trace(bench);
+}
+
 void checkDeterminism(const Subject& subject) {
   const std::vector<double> first = trace(subject, 2);
   trace(subject, 5);
   const std::vector<double> second = trace(subject, 2);
   if (first == second) return;
   throw Broken{"a second instance gave other numbers for the same inputs"};
+}
+
+void checkState(const Subject& subject) {
+  TaskBench goes_on(subject, 2), restored(subject, 5);
+  goes_on.tick(kTicks / 2);
+  restored.tick(3 * kStretch);
+  restored.goOnAs(goes_on);
+  if (trace(goes_on, kTicks / 2) != trace(restored, kTicks / 2)) throw Broken{kArchivesTooLittle};
 }
 
 }  // namespace
@@ -269,6 +287,7 @@ void checkTask(const Subject& subject, Report& report) {
   law("frame", checkFrame);
   law("allocation", checkAllocation);
   law("determinism", checkDeterminism);
+  law("state", checkState);
 }
 
 }  // namespace tactus::conformance

@@ -50,9 +50,9 @@ struct TickFile {
   std::optional<Capsule> capsule;
 };
 
-/// Throws runtime::FileError or TickFileError.
+/// Throws runtime::FileError or JsonFileError.
 TickFile readTickFile(const std::string& file);
-/// Throws TickFileError.
+/// Throws JsonFileError.
 TickFile parseTickFile(const std::string& text);
 
 std::string capsuleToJson(const control::TickProblem& problem, const Capsule& capsule);

@@ -5,8 +5,8 @@
 #include <limits>
 #include <set>
 
+#include "dsl/json_file_error.h"
 #include "dsl/nearest_name.h"
-#include "dsl/tick_file.h"
 
 namespace tactus::dsl {
 
@@ -14,7 +14,7 @@ std::string countOf(std::size_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
 }
 
-void JsonNode::fail(const std::string& reason) const { throw TickFileError(path_, reason); }
+void JsonNode::fail(const std::string& reason) const { throw JsonFileError(path_, reason); }
 
 void JsonNode::expectObject(const std::vector<std::string>& required, const std::vector<std::string>& optional) const {
   if (!json_.is_object()) fail("expected an object");
@@ -130,9 +130,9 @@ Json parseJson(const std::string& text) {
   } catch (const nlohmann::json::exception& error) {
     const std::string what = error.what();                         // "[json.exception.…] parse error at line 1, …"
     const std::size_t end = what.find("] ");
-    throw TickFileError("", "not JSON: " + (end == std::string::npos ? what : what.substr(end + 2)));
+    throw JsonFileError("", "not JSON: " + (end == std::string::npos ? what : what.substr(end + 2)));
   }
-  if (!repeated.empty()) throw TickFileError("", "key \"" + repeated + "\" is repeated in one object");
+  if (!repeated.empty()) throw JsonFileError("", "key \"" + repeated + "\" is repeated in one object");
   return json;
 }
 

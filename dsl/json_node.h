@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-/// JSON files of Tactus, read strictly: what is wrong becomes a TickFileError with the path of the value.
+/// JSON files of Tactus, read strictly: what is wrong becomes a JsonFileError with the path of the value.
 namespace tactus::dsl {
 
 using Json = nlohmann::ordered_json;
 
-/// A value of the document with the path that leads to it.  Every reading member throws TickFileError.
+/// A value of the document with the path that leads to it.  Every reading member throws JsonFileError.
 class JsonNode {
  public:
   JsonNode(const Json& json, std::string path, bool non_finite = false)
@@ -51,7 +51,7 @@ class JsonNode {
 /// "1 row", "3 rows"
 std::string countOf(std::size_t n, const std::string& noun);
 
-/// The document; throws TickFileError for what is not JSON, or repeats a key in one object.
+/// The document; throws JsonFileError for what is not JSON, or repeats a key in one object.
 Json parseJson(const std::string& text);
 
 }  // namespace tactus::dsl

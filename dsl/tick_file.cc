@@ -109,9 +109,6 @@ Json exactMatrix(const Eigen::MatrixXd& values) {
 
 }  // namespace
 
-TickFileError::TickFileError(std::string path, const std::string& reason)
-    : std::runtime_error(path.empty() ? reason : path + ": " + reason), json_path(std::move(path)) {}
-
 const char* statusName(control::Status status) {
   switch (status) {
     case control::Status::ok: return "ok";

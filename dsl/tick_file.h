@@ -1,8 +1,8 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 
+#include "dsl/json_file_error.h"
 #include "framework/control/tick_problem.h"
 #include "framework/control/tick_solution.h"
 
@@ -16,17 +16,9 @@
 /// with one more key, and reads as one.
 namespace tactus::dsl {
 
-/// What is wrong with a tick problem file; the message starts with the JSON path, e.g.
-/// "levels[1].tasks[0].jacobian: row 2 has 8 numbers, expected 9" (rows count from 1).
-class TickFileError : public std::runtime_error {
- public:
-  TickFileError(std::string json_path, const std::string& reason);
-  std::string json_path;                                           ///< "" = the file as a whole
-};
-
-/// Reads a file; throws runtime::FileError or TickFileError.
+/// Reads a file; throws runtime::FileError or JsonFileError.
 control::TickProblem readTickProblem(const std::string& file);
-/// Reads a text; throws TickFileError.  Strict: an unknown, missing or repeated key is an error, and so are sizes that
+/// Reads a text; throws JsonFileError.  Strict: an unknown, missing or repeated key is an error, and so are sizes that
 /// do not fit and a mass matrix that is not symmetric positive definite.  Levels may come in any order.
 control::TickProblem parseTickProblem(const std::string& text);
 

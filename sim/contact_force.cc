@@ -363,18 +363,44 @@ double ContactForce::exposure(int collider, const Eigen::Vector3d& surface_point
   return exposure;
 }
 
-void ContactForce::commit() {
+void ContactForce::clear() {
   for (int pair : bent_) {
     bristles_[pair].setZero();
     twists_[pair].setZero();
     places_[pair].setConstant(std::nan(""));
   }
   bent_.clear();
+}
+
+void ContactForce::commit() {
+  clear();
   for (const Touch& touch : touches_) {
     bristles_[touch.pair] = touch.bristles;
     twists_[touch.pair] = touch.twists;
     places_[touch.pair] = touch.places;
     bent_.push_back(touch.pair);
+  }
+}
+
+void ContactForce::archive(control::Archive& archive) {
+  std::size_t pairs = pairs_.size();
+  archive("pairs", pairs);
+  if (pairs != pairs_.size())
+    throw control::StateError("the state is of " + std::to_string(pairs) + " pairs of surfaces, this scene and robot have " +
+                              std::to_string(pairs_.size()));
+  std::vector<Bent> all;
+  for (int pair : bent_) all.push_back({pair, bristles_[pair], twists_[pair], places_[pair]});
+  archive.growing("bent", all);
+  if (!archive.restores()) return;
+  for (const Bent& bent : all)
+    if (bent.pair < 0 || bent.pair >= static_cast<int>(pairs_.size()))
+      throw control::StateError("the state has bristles of a pair of surfaces that there is not");
+  clear();
+  for (const Bent& bent : all) {
+    bristles_[bent.pair] = bent.bristles;
+    twists_[bent.pair] = bent.twists;
+    places_[bent.pair] = bent.places;
+    bent_.push_back(bent.pair);
   }
 }
 

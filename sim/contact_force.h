@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "framework/control/archive.h"
 #include "framework/control/sensed.h"
 #include "framework/description/scene.h"
 #include "sim/contact_surfaces.h"
@@ -78,6 +79,9 @@ class ContactForce {
   /// Keeps the bristles of the last evaluation: call once per accepted step.
   void commit();
 
+  /// What is committed.  Throws StateError where the state has other pairs.
+  void archive(control::Archive& archive);
+
   /// By body, of the last evaluation; zero for a body that touches nothing.
   const std::vector<BodyWrench>& wrenches() const { return wrenches_; }
   /// One record per pair of a link and something else that touched in the last evaluation; `records` is overwritten.
@@ -104,6 +108,18 @@ class ContactForce {
     /// t of interior points; NaN where there is none
     Eigen::Matrix<double, most_interior, 1> places = Eigen::Matrix<double, most_interior, 1>::Constant(std::nan(""));
   };
+  /// What is committed of a pair, for the archive.
+  struct Bent {
+    int pair = 0;
+    Bristles bristles, twists;
+    Eigen::Matrix<double, most_interior, 1> places;
+    void archive(control::Archive& archive) {
+      archive("pair", pair);
+      archive("bristles", bristles);
+      archive("twists", twists);
+      archive("places", places);
+    }
+  };
   /// Where a collider is and how it moves, in this evaluation.
   struct Posed {
     Eigen::Matrix3d R_WP;
@@ -112,6 +128,7 @@ class ContactForce {
   /// One contact point of a pair, in the shape's frame.
   struct Point;
 
+  void clear();
   void pose(const std::vector<BodyMotion>& bodies);
   void touchPair(int pair, const BodyMotion& of_feature, const BodyMotion& of_collider, double h);
   int findInterior(const geometry::Shape& shape, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,

@@ -39,4 +39,11 @@ void JointResistance::commit() {
   for (Axis& axis : axes_) axis.bend = axis.next_bend;
 }
 
+void JointResistance::archive(control::Archive& archive) {
+  std::vector<double> bends;
+  for (const Axis& axis : axes_) bends.push_back(axis.bend);
+  archive("bends", bends);
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].bend = bends[i];
+}
+
 }  // namespace tactus::sim

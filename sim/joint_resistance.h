@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/control/archive.h"
 #include "framework/description/robot.h"
 
 namespace tactus::sim {
@@ -24,6 +25,7 @@ class JointResistance {
   void add(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, Eigen::VectorXd& torque);
   /// Keeps the bristles of the last `add`.
   void commit();
+  void archive(control::Archive& archive);
 
  private:
   struct Axis {

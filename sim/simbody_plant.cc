@@ -117,6 +117,21 @@ class SimbodyPlant::Implementation {
     fillSensed();
   }
 
+  /// Simbody's own state follows from what is archived here.
+  void archive(control::Archive& archive) {
+    archive("steps", steps_);
+    archive("q", q_);
+    archive("qd", qd_);
+    archive("free-bodies", free_);
+    archive("contact", contact_);
+    archive("resistance", resistance_);
+    archive.growing("wrenches", sensed_.wrenches);
+    if (!archive.restores()) return;
+    realize();
+    contact_.evaluate(motions_, options_.step);
+    fillSensed();
+  }
+
  private:
   struct JointName {
     std::string name;
@@ -138,6 +153,12 @@ class SimbodyPlant::Implementation {
   struct FreeState {
     Eigen::Quaterniond rotation;
     Eigen::Vector3d place, angular_W, linear_W;
+    void archive(control::Archive& archive) {
+      archive("rotation", rotation);
+      archive("place", place);
+      archive("angular", angular_W);
+      archive("linear", linear_W);
+    }
   };
 
   int movedObjects() const {
@@ -481,6 +502,8 @@ SimbodyPlant::~SimbodyPlant() = default;
 const control::Sensed& SimbodyPlant::sense() const { return implementation_->sense(); }
 
 std::span<const control::ObjectMotion> SimbodyPlant::objects() const { return implementation_->objects(); }
+
+void SimbodyPlant::archive(control::Archive& archive) { implementation_->archive(archive); }
 
 void SimbodyPlant::advance(const Eigen::VectorXd& torque, double duration) {
   implementation_->advance(torque, duration);

@@ -40,6 +40,7 @@ class SimbodyPlant final : public runtime::Plant {
   /// taken: PlantError says joint, value and time, and `sense` shows the last good step.
   void advance(const Eigen::VectorXd& torque, double duration) override;
   std::span<const control::ObjectMotion> objects() const override;
+  void archive(control::Archive& archive) override;
 
  private:
   class Implementation;

@@ -89,6 +89,11 @@ void ContactForce::doUpdate(const Tick& tick, TickTask& rows) {
   excess_.endTick();
 }
 
+void ContactForce::doArchive(Archive& archive) {
+  archive("excess", excess_);
+  archive("lowest-reference", lowest_reference_);
+}
+
 bool ContactForce::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                                 Eigen::Ref<Eigen::VectorXd> dx) const {
   for (std::size_t i = 0; i < contacts_.contacts.size(); ++i) {

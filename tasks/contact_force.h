@@ -29,6 +29,7 @@ class ContactForce final : public control::Task {
 
  private:
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void doArchive(control::Archive& archive) override;
 
   int rowsPerContact() const { return friction_ ? 3 : 1; }
 

@@ -51,6 +51,10 @@ void ContactLimit::doUpdate(const Tick& tick, TickTask& rows) {
   excess_.endTick();
 }
 
+void ContactLimit::doArchive(Archive& archive) {
+  archive("excess", excess_);
+}
+
 bool ContactLimit::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                                 Eigen::Ref<Eigen::VectorXd> dx) const {
   for (std::size_t i = 0; i < contacts_.contacts.size(); ++i) {

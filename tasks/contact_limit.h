@@ -20,6 +20,7 @@ class ContactLimit final : public control::Task {
 
  private:
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void doArchive(control::Archive& archive) override;
 
   const control::ContactSet& contacts_;
   double feedback_, back_off_limit_;

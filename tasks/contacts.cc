@@ -104,6 +104,21 @@ void Contacts::doUpdate(const Tick& tick) {
   publish(tick);
 }
 
+// Without what every tick makes anew.
+void Contacts::LinkTouch::archive(Archive& archive) {
+  archive("on", on);
+  archive("pending-since", pending_since);
+  archive("point", point_L);
+  archive("normal", normal_L);
+  archive("recent", recent);
+  archive("recent-next", recent_next);
+}
+
+void Contacts::doArchive(Archive& archive) {
+  archive("links", links_);
+  archive("points", points_);
+}
+
 void Contacts::accumulateRecords(const Tick& tick) {
   for (LinkTouch& link : links_) {
     link.force_N = 0;

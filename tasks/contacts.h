@@ -37,10 +37,12 @@ class Contacts final : public control::Signal {
     Eigen::Vector3d centre_L;                                      ///< the desired point: the middle of the link's shapes
     std::vector<Eigen::Vector3d> recent;                           ///< last touched points, a ring
     int recent_next = 0;
+    void archive(control::Archive& archive);
   };
 
   void doUpdate(const control::Tick& tick) override;
   const void* doPort(std::string_view name) const override;
+  void doArchive(control::Archive& archive) override;
   void accumulateRecords(const control::Tick& tick);
   void applyHysteresis(LinkTouch& link, double time) const;
   void rememberPoint(LinkTouch& link, int frame, const control::ContactRecord& record, double time);

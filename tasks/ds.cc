@@ -102,6 +102,11 @@ void DynamicalSystem::doUpdate(const Tick& tick, TickTask& rows) {
   error_ = (velocity - f).norm();
 }
 
+void DynamicalSystem::doArchive(Archive& archive) {
+  archive("tank", tank_);
+  archive("direction", direction_W_);
+}
+
 bool DynamicalSystem::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                                    Eigen::Ref<Eigen::VectorXd> dx) const {
   dx = frameDisplacement(from, to, frame_).head<3>();

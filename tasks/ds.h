@@ -26,6 +26,7 @@ class DynamicalSystem final : public control::Task {
 
  private:
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void doArchive(control::Archive& archive) override;
 
   int frame_;
   Eigen::Vector3d target_W_;

@@ -203,6 +203,18 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   key_number_ = key_index_;
 }
 
+void FollowSurface::doArchive(Archive& archive) {
+  archive("normal", normal_W_);
+  archive("key", key_index_);
+  archive("nearest", nearest_);
+  archive("progress-time", progress_time_);
+  archive("key-started", key_started_);
+  archive("keys-passed", keys_passed_);
+  archive("keys-given-up", keys_given_up_);
+  archive("key-number", key_number_);
+  archive("last-key-time", last_key_time_);
+}
+
 bool FollowSurface::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                                  Eigen::Ref<Eigen::VectorXd> dx) const {
   dx = frameDisplacement(from, to, frame_);

@@ -33,6 +33,7 @@ class FollowSurface final : public control::Task {
 
  private:
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void doArchive(control::Archive& archive) override;
   void updateNormal(double dt);
   Eigen::Matrix3d wantedOrientation(const Eigen::Matrix3d& R_WH) const;
   void advanceKey(double time, double tangential_distance);

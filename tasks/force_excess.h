@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "framework/control/archive.h"
+
 namespace tactus::tasks {
 
 /// LP(f − f_t)₊ of the contacts of each frame: by how much the measured force exceeds a threshold, through a first-order
@@ -26,6 +28,7 @@ class ForceExcess {
       if (!measured_[frame]) excess_[frame] = 0;
     }
   }
+  void archive(control::Archive& archive) { archive("excess", excess_); }
 
  private:
   double threshold_, time_constant_;

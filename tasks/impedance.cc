@@ -76,6 +76,13 @@ void Impedance::doUpdate(const Tick& tick, TickTask& rows) {
   error_ = p_e.norm();
 }
 
+void Impedance::doArchive(Archive& archive) {
+  archive("has-position", has_position_);
+  archive("has-orientation", has_orientation_);
+  archive("position", position_W_);
+  archive("orientation", orientation_W_);
+}
+
 bool Impedance::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                              Eigen::Ref<Eigen::VectorXd> dx) const {
   dx = frameDisplacement(from, to, frame_);

@@ -19,6 +19,7 @@ class Impedance final : public control::Task {
 
  private:
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void doArchive(control::Archive& archive) override;
 
   int frame_;
   Eigen::Vector3d stiffness_, damping_, turn_stiffness_, turn_damping_;

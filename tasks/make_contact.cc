@@ -93,6 +93,10 @@ void MakeContact::doUpdate(const Tick& tick, TickTask& rows) {
   }
 }
 
+void MakeContact::doArchive(Archive& archive) {
+  archive("references", references_);
+}
+
 bool MakeContact::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                                Eigen::Ref<Eigen::VectorXd> dx) const {
   int row = 0;

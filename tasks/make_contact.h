@@ -26,9 +26,14 @@ class MakeContact final : public control::Task {
   struct Reference {
     bool active = false;
     Eigen::Vector3d position_W = Eigen::Vector3d::Zero();
+    void archive(control::Archive& archive) {
+      archive("active", active);
+      archive("position", position_W);
+    }
   };
 
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void doArchive(control::Archive& archive) override;
   Eigen::Vector3d desiredVelocity(const Eigen::Vector3d& point_W) const;
 
   const control::MissingSet& missing_;

@@ -129,6 +129,16 @@ void Phases::doUpdate(const Tick& tick) {
   }
 }
 
+void Phases::doArchive(Archive& archive) {
+  archive("phases", phases_);
+  archive("current", current_);
+  archive("entered", entered_);
+  archive("last-update", last_update_);
+  archive("time-in-phase", time_in_phase_);
+  archive("index", index_);
+  archive("changes", changes_);
+}
+
 const void* Phases::doPort(std::string_view name) const {
   if (name == "time") return &time_in_phase_;
   if (name == "index") return &index_;

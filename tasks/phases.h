@@ -31,16 +31,23 @@ class Phases final : public control::Signal {
     double hold = 0;                                               ///< s
     double after = 0;                                              ///< s
     double held_since = -1;                                        ///< s; -1 = it does not hold
+    void archive(control::Archive& archive) { archive("held-since", held_since); }
   };
   struct Phase {
     std::string name;
     std::vector<Next> next;
     double active = 0;                                             ///< 1 while the machine is in it
     double time = 0;                                               ///< s spent in it
+    void archive(control::Archive& archive) {
+      archive("next", next);
+      archive("active", active);
+      archive("time", time);
+    }
   };
 
   void doUpdate(const control::Tick& tick) override;
   const void* doPort(std::string_view name) const override;
+  void doArchive(control::Archive& archive) override;
   void enter(int phase, double time);
 
   std::vector<Phase> phases_;

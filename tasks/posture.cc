@@ -133,6 +133,13 @@ void Posture::doUpdate(const Tick& tick, TickTask& rows) {
   }
 }
 
+void Posture::doArchive(Archive& archive) {
+  archive("reference", reference_);
+  archive("has-reference", has_reference_);
+  archive("last-touch", last_touch_);
+  archive("touched", touched_);
+}
+
 bool Posture::displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                            Eigen::Ref<Eigen::VectorXd> dx) const {
   int row = 0;

@@ -22,6 +22,7 @@ class Posture final : public control::Task {
  private:
   Posture(const control::BuildContext& context, std::vector<int> joints);
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
+  void doArchive(control::Archive& archive) override;
   bool isFree(int index) const;
 
   std::vector<int> joints_;

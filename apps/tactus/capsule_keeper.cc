@@ -12,6 +12,7 @@ CapsuleKeeper::CapsuleKeeper(const Session& session, const std::string& folder)
     : stack_(session.stack()),
       places_(session.taskPlaces()),
       folder_(folder),
+      tick_(static_cast<int>(session.tick())),
       joints_(session.controller().model().jointNames()) {}
 
 void CapsuleKeeper::before(const control::Controller& controller) {

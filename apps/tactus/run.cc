@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "apps/tactus/capsule_keeper.h"
 #include "apps/tactus/interrupt.h"
@@ -7,6 +8,7 @@
 #include "apps/tactus/report.h"
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/state_keeper.h"
 #include "apps/tactus/text.h"
 #include "apps/tactus/xray_view.h"
 #include "dsl/read_stack.h"
@@ -18,14 +20,76 @@ namespace {
 
 struct RunArguments : StackArguments {
   std::string out;
+  std::string from;                                                ///< state file; "" = the stack's start
+  std::string save_at;                                             ///< s, separated by commas
 };
 
 /// Watches a run for what its folder tells beyond the log.
 struct Keepers {
-  Keepers(const Session& session, const std::string& folder) : capsules(session, folder), xrays(session) {}
+  Keepers(Session& session, const std::string& folder, const std::vector<double>& save_at)
+      : capsules(session, folder), xrays(session), states(session, folder, save_at) {}
   CapsuleKeeper capsules;
   XrayKeeper xrays;
+  StateKeeper states;
 };
+
+/// The stack's session, as a state of it left off where one is given.
+dsl::Stack stackOf(Program& program, const RunArguments& arguments, const std::optional<dsl::SavedState>& from) {
+  StackOptions options = arguments.stack;
+  if (from) {
+    if (options.seed && static_cast<std::uint64_t>(*options.seed) != from->seed)
+      throw UsageError("--seed " + std::to_string(*options.seed) + ": the state is of seed " + std::to_string(from->seed) +
+                       ", whose objects and draws it holds");
+    options.seed = from->seed;
+  }
+  return readAloud(program, options);
+}
+
+std::optional<dsl::SavedState> stateOf(const std::string& file) {
+  if (file.empty()) return std::nullopt;
+  try {
+    return dsl::readState(file);
+  } catch (const dsl::JsonFileError& error) {
+    throw runtime::FileError(file, error.what());
+  }
+}
+
+void goOnFrom(const dsl::SavedState& state, const std::string& file, Session& session) {
+  const double duration = session.stack().run.duration;
+  if (state.time >= duration - 0.5 * session.controller().period())
+    throw UsageError("the state is of t = " + control::formatNumber(state.time) + " s, and the run ends at " +
+                     control::formatNumber(duration) + " s: give a longer --duration, counted from 0");
+  try {
+    for (const std::string& note : session.restore(state)) std::cerr << "tactus run: " << file << ": " << note << "\n";
+  } catch (const control::StateError& error) {
+    throw runtime::FileError(file, error.what());
+  }
+}
+
+std::vector<double> saveTimes(const RunArguments& arguments, const Session& session) {
+  if (arguments.save_at.empty()) return {};
+  const std::vector<double> times = parseNumbers(arguments.save_at, "--save-at");
+  const double from = session.time(), until = session.stack().run.duration;
+  for (const double time : times)
+    if (!(time >= from && time <= until))
+      throw UsageError("--save-at " + control::formatNumber(time) + ": the run goes from " + control::formatNumber(from) +
+                       " to " + control::formatNumber(until) + " s");
+  return times;
+}
+
+/// A run that goes on leaves the folder that its state lies in as it is.
+std::string folderOf(const RunArguments& arguments, const Session& session, const std::string& label) {
+  if (arguments.from.empty())
+    return arguments.out.empty() ? defaultRunFolder(session.stack(), label) : arguments.out;
+  const std::string folder = arguments.out.empty() ? defaultRunFolder(session.stack(), label) + "-from" +
+                                                         control::formatNumber(session.time())
+                                                   : arguments.out;
+  std::error_code error;
+  const std::filesystem::path of_state = std::filesystem::absolute(arguments.from).parent_path();
+  if (std::filesystem::equivalent(folder, of_state, error))
+    throw UsageError("--out " + folder + ": the state to go on from lies there; give another folder");
+  return folder;
+}
 
 int exitCodeOf(const Session& session, runtime::Ending ending) {
   switch (ending) {
@@ -49,11 +113,13 @@ runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers
     const std::vector<control::Observer*> own = session.startRecorders(folder);
     {
       Progress progress(session.stack().run.duration);
-      std::vector<control::Observer*> observers{recorder.get(), &keepers.capsules, &keepers.xrays, &progress};
+      std::vector<control::Observer*> observers{&keepers.states, recorder.get(), &keepers.capsules, &keepers.xrays,
+                                                &progress};
       observers.insert(observers.end(), own.begin(), own.end());
       result = session.run(observers, stop);
     }
     if (result.ending == runtime::Ending::file_error) return result;
+    if (result.ending == runtime::Ending::interrupted || keepers.states.isDue()) keepers.states.save();
     recorder->close();
     for (control::Observer* one : own) one->close();
   } catch (const runtime::PartError& error) {
@@ -82,18 +148,23 @@ bool wrote(Write write) {
 
 int run(const RunArguments& arguments, bool json) {
   Program program(arguments.plugins);
-  Session session(readAloud(program, arguments.stack), program.registry());
+  const std::optional<dsl::SavedState> from = stateOf(arguments.from);
+  Session session(stackOf(program, arguments, from), program.registry());
+  if (from) goOnFrom(*from, arguments.from, session);
+  const std::vector<double> save_at = saveTimes(arguments, session);
   const std::string label = arguments.stack.back_end.empty() ? session.backEndName() : arguments.stack.back_end;
-  const std::string folder = arguments.out.empty() ? defaultRunFolder(session.stack(), label) : arguments.out;
+  const std::string folder = folderOf(arguments, session, label);
   claimRunFolder(folder, session);
 
   const Interrupt interrupt;
-  Keepers keepers(session, folder);
+  Keepers keepers(session, folder, save_at);
   const CapsuleKeeper& capsules = keepers.capsules;
   const runtime::LoopResult result = runInto(folder, session, keepers, interrupt.stop());
   nlohmann::ordered_json description = describeRun(session, result);
   for (const std::string& warning : capsules.warnings()) description["warnings"].push_back(warning);
   description["capsules"] = capsules.files();
+  if (from) description["from"] = {{"file", arguments.from}, {"time", from->time}};
+  description["states"] = keepers.states.files();
   const bool described = wrote([&] { writeJson(folder + "/run.json", description); });
   // A log that could not be written is no ground for pictures; `tactus report` makes them of what there is.
   const bool drawable = session.statistics().ticks() > 0 && result.ending != runtime::Ending::file_error;
@@ -112,6 +183,9 @@ int run(const RunArguments& arguments, bool json) {
     std::cerr << "tactus run: warning: " << warning.get<std::string>() << "\n";
   if (!capsules.files().empty())
     std::cerr << "failed ticks are kept: tactus solve " << folder << "/" << capsules.files().front() << "\n";
+  if (result.ending == runtime::Ending::interrupted && !keepers.states.files().empty())
+    std::cerr << "to go on: tactus run " << arguments.stack.file << " --from " << folder << "/"
+              << keepers.states.files().back() << "\n";
   std::cerr << "run folder: " << folder << (drawn ? ", pictures in report.html\n" : "\n");
   const int code = exitCodeOf(session, result.ending);
   return code == exit_done && !(described && drawn == drawable) ? exit_files : code;
@@ -129,16 +203,22 @@ void addRun(CLI::App& program, Context& context) {
   arguments->declare(*command);
   command->add_option("--out", arguments->out, "Run folder; runs/<stack>-<back end>-seed<N> without it")
       ->type_name("DIR");
+  command->add_option("--save-at", arguments->save_at, "Save the whole state at these times, as state-<time>.json")
+      ->type_name("SECONDS,…");
+  command->add_option("--from", arguments->from, "Go on from a saved state, to the bit; with --set and --backend: branch")
+      ->type_name("STATE");
   command->add_flag("--json", context.json, "Print run.json on stdout instead of the summary");
   command->footer(
       R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml, xray.json and report.html in the
 run folder, and the first 5 ticks that failed or came late as capsule-<tick>.json, which `tactus solve`
-solves again to the bit.
+solves again to the bit.  A run that is interrupted leaves its state too, and `--from` goes on with it.
 
 Examples:
   tactus run examples/explore_table/stack.xml
   tactus run examples/explore_table/stack.xml --backend qp/nlopt --seed 3 --duration 10
-  tactus run examples/explore_table/stack.xml --set press=0.8 --out runs/harder)");
+  tactus run examples/explore_table/stack.xml --set press=0.8 --out runs/harder
+  tactus run examples/explore_table/stack.xml --save-at 5 --out runs/whole
+  tactus run examples/explore_table/stack.xml --from runs/whole/state-5.json --set press=0.8 --out runs/branch)");
   command->callback([=, &context] { context.action = [=, &context] { return run(*arguments, context.json); }; });
 }
 

@@ -5,6 +5,7 @@
 
 #include "apps/tactus/capsule_keeper.h"
 #include "apps/tactus/json_place.h"
+#include "apps/tactus/state_keeper.h"
 #include "apps/tactus/targets.h"
 #include "apps/tactus/text.h"
 #include "apps/tactus/versions.h"
@@ -79,10 +80,12 @@ std::string unusualTicks(const ordered_json& ticks) {
 
 }  // namespace
 
-void writeJson(const std::string& path, const ordered_json& json) {
+void writeJson(const std::string& path, const ordered_json& json) { writeWhole(path, jsonText(json, 2) + "\n"); }
+
+void writeWhole(const std::string& path, const std::string& text) {
   const std::string fresh = path + ".new";
   try {
-    runtime::writeFile(fresh, jsonText(json, 2) + "\n");
+    runtime::writeFile(fresh, text);
     fs::rename(fresh, path);
   } catch (...) {
     std::error_code ignored;
@@ -109,10 +112,12 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   }
   for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg", xray_file})
     fs::remove(fs::path(folder) / picture);
-  std::vector<fs::path> capsules;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (CapsuleKeeper::isCapsule(entry.path().filename().string())) capsules.push_back(entry.path());
-  for (const fs::path& capsule : capsules) fs::remove(capsule);
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (CapsuleKeeper::isCapsule(name) || StateKeeper::isState(name)) old.push_back(entry.path());
+  }
+  for (const fs::path& file : old) fs::remove(file);
   writeJson(folder + "/run.json", describeStart(session, status_running));
 }
 

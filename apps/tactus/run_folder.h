@@ -13,8 +13,8 @@ inline constexpr const char* status_running = "running";         ///< until the 
 /// runs/<stack>-<back end>-seed<N>
 std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_end_label);
 
-/// Makes the folder ready for a run: a new or empty one, or that of an earlier run, whose pictures and capsules are
-/// taken away.  Leaves a run.json that says "running".  Throws FileError for a folder that holds anything else.
+/// Makes the folder ready for a run: a new or empty one, or that of an earlier run, whose pictures, capsules and
+/// states are taken away.  Leaves a run.json that says "running".  Throws FileError for a folder that holds anything else.
 void claimRunFolder(const std::string& folder, const Session& session);
 
 /// What run.json holds after a run; a figure that was never met is null.
@@ -26,6 +26,8 @@ nlohmann::ordered_json describeStart(const Session& session, const std::string& 
 /// What describeRun holds, as a table for people.
 std::string summaryTable(const nlohmann::ordered_json& run);
 
+/// Writes a file, all of it or nothing; throws FileError.
+void writeWhole(const std::string& path, const std::string& text);
 /// Writes JSON with a final line end, all of it or nothing; throws FileError.
 void writeJson(const std::string& path, const nlohmann::ordered_json& json);
 

@@ -30,6 +30,29 @@ std::unique_ptr<runtime::SensingPlant> makePlant(const dsl::Stack& stack, const 
   }
 }
 
+void expectSame(const char* what, const std::vector<std::string>& in_state, const std::vector<std::string>& here) {
+  if (in_state == here) return;
+  const auto list = [](const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "none" : text;
+  };
+  throw control::StateError(std::string("the state has other ") + what + " than this stack: " + list(in_state) +
+                            " instead of " + list(here));
+}
+
+/// "controller/task/hold/excess" is of "controller/task/hold"; each once.
+std::vector<std::string> partsOf(const std::vector<std::string>& paths) {
+  std::vector<std::string> parts;
+  for (const std::string& path : paths) {
+    size_t end = 0;
+    for (int depth = 0; depth < 3 && end != std::string::npos; ++depth) end = path.find('/', end + (depth > 0));
+    const std::string part = path.substr(0, end);
+    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
+  }
+  return parts;
+}
+
 }  // namespace
 
 Session::Session(dsl::Stack stack, const control::Registry& registry)
@@ -93,10 +116,51 @@ void Session::findFeatures() {
   }
 }
 
+dsl::SavedState Session::save() {
+  dsl::SavedState saved;
+  saved.stack = stack_.name;
+  saved.back_end = backEndName();
+  saved.seed = stack_.run.seed;
+  saved.time = time();
+  saved.robot = stack_.robot.name;
+  saved.joints = controller_->model().jointNames();
+  for (const description::Link& link : stack_.robot.links) saved.links.push_back(link.name);
+  for (const description::Object& object : scene_.objects) saved.objects.push_back(object.name);
+  control::Archive archive = control::Archive::saving(saved.values);
+  archiveParts(archive);
+  return saved;
+}
+
+std::vector<std::string> Session::restore(const dsl::SavedState& saved) {
+  const dsl::SavedState here = save();
+  expectSame("joints", saved.joints, here.joints);
+  expectSame("links", saved.links, here.links);
+  expectSame("objects", saved.objects, here.objects);
+  control::Archive archive = control::Archive::restoring(saved.values);
+  archiveParts(archive);
+  const std::string world = "plant/world/";
+  for (const std::string& path : archive.missing())
+    if (path.starts_with(world)) throw control::StateError("the state lacks '" + path + "'");
+  for (const std::string& path : archive.unclaimed(world))
+    throw control::StateError("this stack's world has no '" + path + "'");
+  std::vector<std::string> notes;
+  for (const std::string& part : partsOf(archive.missing()))
+    notes.push_back(part + " is not in the state, or not all of it: it starts afresh");
+  for (const std::string& part : partsOf(archive.unclaimed()))
+    notes.push_back(part + " of the state is not in this stack");
+  return notes;
+}
+
+void Session::archiveParts(control::Archive& archive) {
+  archive("plant", static_cast<runtime::Plant&>(*plant_));
+  archive("controller", *controller_);
+  archive("contacts", *contacts_);
+}
+
 runtime::LoopResult Session::run(const std::vector<control::Observer*>& others, const std::atomic<bool>& stop) {
   std::vector<control::Observer*> observers{contacts_.get(), &statistics_};
   observers.insert(observers.end(), others.begin(), others.end());
-  return runtime::runLoop(*plant_, *controller_, stack_.run.duration, observers, stop);
+  return runtime::runLoop(*plant_, *controller_, stack_.run.duration - time(), observers, stop);
 }
 
 std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder) const {
@@ -106,6 +170,7 @@ std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder
   options.row_rate = stack_.run.record_rate;
   options.contacts = contacts_.get();
   options.touched_points = touched_points_;
+  options.first_tick = tick();
   for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
     if (scene_.objects[i].mobility != description::Mobility::fixed) options.objects.push_back({scene_.objects[i].name, i});
   return std::make_unique<runtime::Recorder>(options);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "apps/tactus/program.h"
 #include "dsl/stack.h"
+#include "dsl/state_file.h"
 #include "framework/control/controller.h"
 #include "framework/runtime/contact_metrics.h"
 #include "framework/runtime/guarded_observer.h"
@@ -34,7 +36,16 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Runs for the stack's duration; `others` observe after contacts and statistics.
+  /// All that the next tick depends on, figures of contacts included.
+  dsl::SavedState save();
+  /// Goes on from there; the robot and the scene's objects are those of the state.  Throws control::StateError.  What
+  /// the state lacks, or this stack, is told, a sentence each: tasks, signals and sensors that it lacks start afresh.
+  std::vector<std::string> restore(const dsl::SavedState& saved);
+  /// s, of the tick that comes next, by the plant's clock.
+  double time() const { return plant_->truth().time; }
+  long tick() const { return std::lround(time() / controller_->period()); }
+
+  /// Runs until the stack's duration; `others` observe after contacts and statistics.
   runtime::LoopResult run(const std::vector<control::Observer*>& others, const std::atomic<bool>& stop);
   /// A recorder of this session as the stack asks for it, which writes into `folder`.
   std::unique_ptr<runtime::Recorder> recordInto(const std::string& folder) const;
@@ -72,6 +83,7 @@ class Session {
   const T* findPort(size_t signal, const std::string& port) const;
   std::vector<int> desiredLinks() const;
   void findFeatures();
+  void archiveParts(control::Archive& archive);
 
   dsl::Stack stack_;
   const control::Registry& registry_;

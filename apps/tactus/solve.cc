@@ -131,7 +131,7 @@ void resume(control::BackEnd& back_end, const control::WarmStart& warm_start) {
   try {
     back_end.setWarmStart(warm_start);
   } catch (const std::exception& error) {
-    throw dsl::TickFileError("capsule.warm_start", std::string("the back end refuses it: ") + error.what());
+    throw dsl::JsonFileError("capsule.warm_start", std::string("the back end refuses it: ") + error.what());
   }
 }
 
@@ -294,7 +294,7 @@ int solve(const SolveArguments& arguments, bool json) {
   try {
     const dsl::TickFile file = dsl::readTickFile(arguments.file);
     return any ? solveAny(program, file, arguments, json) : solveOne(program, file, arguments, json);
-  } catch (const dsl::TickFileError& error) {
+  } catch (const dsl::JsonFileError& error) {
     throw runtime::FileError(arguments.file, error.what());
   }
 }

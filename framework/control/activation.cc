@@ -36,4 +36,12 @@ bool Activation::advance(double time, double dt) {
   return stands_ != stood;
 }
 
+void Activation::archive(Archive& archive) {
+  archive("active", when_.active);
+  archive("started", started_);
+  archive("stands", stands_);
+  archive("share", share_);
+  archive("off-for", off_for_);
+}
+
 }  // namespace tactus::control

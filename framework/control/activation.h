@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "framework/control/archive.h"
+
 namespace tactus::control {
 
 /// When a task or a level takes part: while all of these hold.
@@ -34,6 +36,7 @@ class Activation {
   bool stands() const { return stands_; }
   double share() const { return share_; }
   double ramp() const { return when_.ramp; }
+  void archive(Archive& archive);
   /// Conditions besides setActive: its share is worth a column of the log.
   bool isConditional() const;
 

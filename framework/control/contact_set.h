@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/control/archive.h"
+
 /// What signals hand to tasks: plain data behind typed ports.
 namespace tactus::control {
 
@@ -58,6 +60,8 @@ struct TouchedPoint {
 struct TouchedPoints {
   std::vector<TouchedPoint> points;                                ///< reserved; stops growing when full
 };
+void archive(Archive& archive, TouchedPoints& points);
+void archive(Archive& archive, FeatureEstimate& estimate);
 
 /// The name that a port of this type carries in the element table.
 template <class T>

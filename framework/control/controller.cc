@@ -317,6 +317,13 @@ const Activation& Controller::activationOf(std::string_view task) const {
   return levels_[at.level].tasks[at.task].activation;
 }
 
+void archive(Archive& archive, SwitchedOff& fault) {
+  archive("task", fault.task);
+  archive("time", fault.time);
+  archive("reason", fault.reason);
+  archive("threw", fault.threw);
+}
+
 void Controller::setActive(std::string_view task, bool active) {
   const Place at = placeOf(task);
   levels_[at.level].tasks[at.task].activation.setActive(active);
@@ -356,6 +363,38 @@ void Controller::setBackEnd(std::unique_ptr<BackEnd> back_end) {
   back_end->prepare(problem_, solution_);
   back_end_ = std::move(back_end);
   shaper_.startTransfer(options_.ramp);
+}
+
+void Controller::archive(Archive& archive) {
+  archive("sensing", sensing_);
+  archive("readings", *readings_);
+  for (NamedSignal& named : signals_)
+    archive.within("signal/" + named.name, [&] {
+      archive("switched-off", named.switched_off);
+      named.signal->archive(archive);
+    });
+  for (Level& level : levels_) {
+    archive.within("level/" + std::to_string(level.priority), [&] { archive("activation", level.activation); });
+    if (level.owner.controller)
+      archive.within("owner/" + level.owner.name, [&] {
+        archive("switched-off", level.owner.switched_off);
+        level.owner.controller->archive(archive);
+      });
+    for (NamedTask& named : level.tasks)
+      archive.within("task/" + named.name, [&] {
+        archive("switched-off", named.switched_off);
+        archive("activation", named.activation);
+        named.task->archive(archive);
+      });
+  }
+  archive.growing("switched-off", switched_off_);
+  archive("torque", shaper_);
+  archive("last-solved", last_solved_);
+  archive("unsolved-for", unsolved_for_);
+  archive("bore-weight", bore_weight_);
+  WarmStart warm = back_end_->warmStart();
+  archive.within("back-end/" + back_end_->recipe().back_end, [&] { archive.growing("warm-start", warm); });
+  if (archive.restores()) back_end_->setWarmStart(warm);
 }
 
 const std::string* Controller::findUnusableTask() const {

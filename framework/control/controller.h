@@ -70,6 +70,8 @@ struct SwitchedOff {
   bool threw = false;                                              ///< else its numbers were none
 };
 
+void archive(Archive& archive, SwitchedOff& fault);
+
 /// A task, signal or back end that threw, or broke its promise, in a tick; the message names it and the time.
 class TickError : public std::runtime_error {
  public:
@@ -153,6 +155,10 @@ class Controller {
   const Activation& activationOf(std::string_view task) const;
   /// In the order in which it happened.
   const std::vector<SwitchedOff>& switchedOff() const { return switched_off_; }
+
+  /// All that the next ticks depend on, between two of them: signals, tasks and controllers by name, levels by
+  /// priority, what the back end carries.  What setWeight, setPriority and setBackEnd changed is not among it.
+  void archive(Archive& archive);
 
  private:
   struct Place {

@@ -19,9 +19,12 @@ class LevelController {
   void update(const Tick& tick) { doUpdate(tick); }
   virtual void columns(std::vector<LogColumn>&) const {}
   virtual void metrics(std::vector<Metric>&) const {}
+  /// What it carries from one tick to the next, besides that of its tasks.
+  void archive(Archive& archive) { doArchive(archive); }
 
  private:
   virtual void doUpdate(const Tick& tick) = 0;
+  virtual void doArchive(Archive&) {}
 };
 
 /// A task of a level controller; the stack knows it as `<controller>.<name>`.

@@ -29,6 +29,10 @@ class SplitMix64 {
   }
 
   std::uint64_t state() const { return state_; }
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive("state", state_);
+  }
 
  private:
   std::uint64_t state_;

@@ -29,4 +29,8 @@ const void* Readings::port(const std::string& sensor, const std::string& port) c
   return nullptr;
 }
 
+void Readings::archive(Archive& archive) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) archive(rows_[i].sensor + "." + rows_[i].port, vectors_[i]);
+}
+
 }  // namespace tactus::control

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/control/archive.h"
+
 namespace tactus::control {
 
 /// Where a port of a sensor stands in Sensed::readings: after those before it.
@@ -22,6 +24,8 @@ class Readings {
 
   /// A number that is not finite, or that is missing, leaves the last good one standing (0 at first).
   void take(const Eigen::VectorXd& readings);
+
+  void archive(Archive& archive);
 
   const std::vector<ReadingRow>& rows() const { return rows_; }
   int size() const { return size_; }

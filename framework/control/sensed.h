@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "framework/control/archive.h"
+
 /// What the robot feels at one instant: plain data from the plant to the controller.
 namespace tactus::control {
 
@@ -40,5 +42,9 @@ struct Sensed {
   std::vector<LinkWrench> wrenches;                                ///< of links that sensors ask for, else none
   Eigen::VectorXd readings;                                        ///< of the sensors' ports (see Readings)
 };
+
+void archive(Archive& archive, ContactRecord& record);
+void archive(Archive& archive, LinkWrench& wrench);
+void archive(Archive& archive, Sensed& sensed);
 
 }  // namespace tactus::control

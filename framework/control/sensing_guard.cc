@@ -86,4 +86,24 @@ bool SensingGuard::checkContacts(const Sensed& raw) {
   return false;
 }
 
+void SensingGuard::archive(Archive& archive) {
+  archive("has-time", has_time_);
+  archive("time", known_.time);
+  archive("q", known_.q);
+  archive("qd", known_.qd);
+  archive("never-sensed", never_sensed_);
+  std::vector<char> ever_good;
+  std::vector<double> lost_for;
+  for (const Joint& joint : lost_) {
+    ever_good.push_back(joint.ever_good);
+    lost_for.push_back(joint.lost_for);
+  }
+  archive("ever-good", ever_good);
+  archive("lost-for", lost_for);
+  for (std::size_t i = 0; i < lost_.size(); ++i) {
+    lost_[i].ever_good = ever_good[i];
+    lost_[i].lost_for = lost_for[i];
+  }
+}
+
 }  // namespace tactus::control

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "framework/control/archive.h"
 #include "framework/control/sensed.h"
 #include "framework/dynamics/model.h"
 
@@ -42,6 +43,7 @@ class SensingGuard {
   bool knowsState() const { return never_sensed_ == 0; }
   /// Links of the contacts that this tick ignored; −1 for one that is no link.
   const std::vector<int>& ignoredLinks() const { return ignored_links_; }
+  void archive(Archive& archive);
 
  private:
   struct Joint {

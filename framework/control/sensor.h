@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "framework/control/archive.h"
 #include "framework/control/element_table.h"
 #include "framework/control/sensed.h"
 
@@ -28,9 +29,12 @@ class Sensor {
   /// Links, indices into description::Robot::links, whose LinkWrench it reads in `truth`.  A plant that cannot tell
   /// it, or not yet, leaves it out.
   virtual std::vector<int> wrenchLinks() const { return {}; }
+  /// What it carries from one tick to the next, its random draws among it.
+  void archive(Archive& archive) { doArchive(archive); }
 
  private:
   virtual void doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) = 0;
+  virtual void doArchive(Archive&) {}
 };
 
 }  // namespace tactus::control

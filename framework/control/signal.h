@@ -4,6 +4,7 @@
 #include <typeinfo>
 #include <vector>
 
+#include "framework/control/archive.h"
 #include "framework/control/tick.h"
 
 namespace tactus::control {
@@ -19,9 +20,13 @@ class Signal {
   const void* port(std::string_view name) const { return doPort(name); }
   virtual void columns(std::vector<LogColumn>&) const {}
   virtual void metrics(std::vector<Metric>&) const {}
+  /// What it carries from one tick to the next, what stands behind its ports as far as the next update does not make
+  /// that anew.
+  void archive(Archive& archive) { doArchive(archive); }
 
  private:
   virtual void doUpdate(const Tick& tick) = 0;
+  virtual void doArchive(Archive&) {}
   virtual const void* doPort(std::string_view name) const = 0;
 };
 

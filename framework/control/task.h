@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/control/archive.h"
 #include "framework/control/tick.h"
 #include "framework/control/tick_problem.h"
 
@@ -35,6 +36,11 @@ class Task {
   virtual void columns(std::vector<LogColumn>&) const {}
   /// Figures of the whole run.
   virtual void metrics(std::vector<Metric>&) const {}
+  /// What it carries from one tick to the next.
+  void archive(Archive& archive) {
+    archive("error", error_);
+    doArchive(archive);
+  }
 
  protected:
   Task(Relation relation, int capacity, bool contact = false)
@@ -43,6 +49,7 @@ class Task {
 
  private:
   virtual void doUpdate(const Tick& tick, TickTask& rows) = 0;
+  virtual void doArchive(Archive&) {}
 
   Relation relation_;
   int capacity_;

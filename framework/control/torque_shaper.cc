@@ -45,4 +45,13 @@ void TorqueShaper::apply(const Eigen::VectorXd& wanted) {
   has_torque_ = true;
 }
 
+void TorqueShaper::archive(Archive& archive) {
+  archive("torque", torque_);
+  archive("difference", difference_);
+  archive("ramp", ramp_);
+  archive("left", left_);
+  archive("begins", begins_);
+  archive("has-torque", has_torque_);
+}
+
 }  // namespace tactus::control

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "framework/control/archive.h"
+
 namespace tactus::control {
 
 /// The last stage of a tick: from the torque τ* that is wanted to the one that is applied,
@@ -28,6 +30,7 @@ class TorqueShaper {
   bool limited() const { return limited_; }                        ///< cut into the actuators' limits
   bool rateLimited() const { return rate_limited_; }
   bool transfers() const { return left_ > 0; }
+  void archive(Archive& archive);
 
  private:
   Eigen::VectorXd effort_;

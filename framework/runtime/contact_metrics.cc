@@ -65,6 +65,25 @@ void ContactMetrics::update(const std::vector<control::ContactRecord>& records, 
   switches_counted_ += switched;
 }
 
+void TouchSwitch::archive(control::Archive& archive) {
+  archive("on", on_);
+  archive("waited", waited_);
+}
+
+void ContactMetrics::archive(control::Archive& archive) {
+  archive("switches", switches_);
+  archive("ticks", ticks_);
+  archive("ticks-in-contact", ticks_in_contact_);
+  archive("contacts", contacts_);
+  archive("switches-counted", switches_counted_);
+  archive("time", time_);
+  archive("force-sum", force_sum_);
+  archive("max-sum", max_sum_);
+  archive("peak", peak_);
+  archive("undesired-peak", undesired_peak_);
+  archive("links-sum", links_sum_);
+}
+
 std::vector<control::Metric> ContactMetrics::metrics() const {
   const auto ratio = [&](double sum, double count) {
     return touched() ? sum / count : std::numeric_limits<double>::quiet_NaN();

@@ -18,6 +18,7 @@ class TouchSwitch {
   /// Returns true when the state changed in this step of `dt` seconds.
   bool update(double force_N, double dt);
   bool on() const { return on_; }
+  void archive(control::Archive& archive);
 
  private:
   bool on_ = false;
@@ -60,6 +61,7 @@ class ContactMetrics final : public control::Observer {
   const Now& now() const { return now_; }
   bool touched() const { return ticks_ > 0; }
   std::vector<control::Metric> metrics() const;
+  void archive(control::Archive& archive);
 
  private:
   int objects_;

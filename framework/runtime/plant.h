@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "framework/control/archive.h"
 #include "framework/control/sensed.h"
 
 namespace tactus::runtime {
@@ -28,6 +29,9 @@ class Plant {
   virtual std::span<const control::ObjectMotion> objects() const { return {}; }
   /// Holds the joint torques for `duration` seconds.  Throws PlantError, with the state of the last good step kept.
   virtual void advance(const Eigen::VectorXd& torque, double duration) = 0;
+  /// All that the next steps depend on; `sense` then tells what it told when the state was saved.  Throws StateError,
+  /// as a plant that cannot be saved does.
+  virtual void archive(control::Archive&) { throw control::StateError("this plant cannot be saved or restored"); }
 };
 
 }  // namespace tactus::runtime

@@ -15,7 +15,8 @@ Recorder::Recorder(const RecorderOptions& options)
     : options_(options),
       timing_(options.folder + "/timing.csv", {"time", "tick_us"}),
       touched_(options.folder + "/touched_points.csv",
-               {"time", "link", "x", "y", "z", "normal_x", "normal_y", "normal_z", "force_N"}) {}
+               {"time", "link", "x", "y", "z", "normal_x", "normal_y", "normal_z", "force_N"}),
+      ticks_(options.first_tick) {}
 
 void Recorder::observe(const control::ObservedTick& tick) {
   if (!columns_) {

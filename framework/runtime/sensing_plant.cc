@@ -42,6 +42,32 @@ void SensingPlant::advance(const Eigen::VectorXd& torque, double duration) {
   feel();
 }
 
+void SensingPlant::archive(control::Archive& archive) {
+  archive.within("world", [&] { plant_->archive(archive); });
+  if (sensors_.empty()) return;
+  for (const NamedSensor& named : sensors_)
+    archive.within("sensor/" + named.name, [&] { named.sensor->archive(archive); });
+  const std::size_t missing = archive.missing().size();
+  archiveFelt(archive);
+  if (archive.missing().size() != missing) feel();                 // the state is of other sensors
+}
+
+void SensingPlant::archiveFelt(control::Archive& archive) {
+  archive.within("felt", [&] {
+    archive("time", felt_.time);
+    archive("q", felt_.q);
+    archive("qd", felt_.qd);
+    archive.growing("contacts", felt_.contacts);
+  });
+  int at = 0;
+  for (const NamedSensor& named : sensors_) {
+    Eigen::VectorXd readings = felt_.readings.segment(at, countOf(named.rows));
+    archive("readings/" + named.name, readings);
+    felt_.readings.segment(at, readings.size()) = readings;
+    at += static_cast<int>(readings.size());
+  }
+}
+
 void SensingPlant::feel() {
   if (sensors_.empty()) return;
   const control::Sensed& truth = plant_->sense();

@@ -29,9 +29,11 @@ class SensingPlant final : public Plant {
   const control::Sensed& truth() const override { return plant_->truth(); }
   std::span<const control::ObjectMotion> objects() const override { return plant_->objects(); }
   void advance(const Eigen::VectorXd& torque, double duration) override;
+  void archive(control::Archive& archive) override;
 
  private:
   void feel();
+  void archiveFelt(control::Archive& archive);
 
   std::unique_ptr<Plant> plant_;
   std::vector<NamedSensor> sensors_;

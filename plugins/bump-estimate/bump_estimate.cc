@@ -68,6 +68,16 @@ void BumpEstimate::doUpdate(const Tick& tick) {
   z_ = result_.position_W.z();
 }
 
+void BumpEstimate::doArchive(Archive& archive) {
+  archive("next-time", next_time_);
+  archive("random", random_);
+  archive("result", result_);
+  archive("found", found_);
+  archive("x", x_);
+  archive("y", y_);
+  archive("z", z_);
+}
+
 void BumpEstimate::estimate() {
   result_ = FeatureEstimate{};
   Plane plane;

@@ -35,6 +35,7 @@ class BumpEstimate final : public control::Signal {
 
   void doUpdate(const control::Tick& tick) override;
   const void* doPort(std::string_view name) const override;
+  void doArchive(control::Archive& archive) override;
   void estimate();
   bool fitPlane(Plane& plane);
   bool fitSphere(Sphere& sphere);

@@ -69,4 +69,12 @@ void Encoders::doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::Vect
   }
 }
 
+void Encoders::doArchive(Archive& archive) {
+  archive("sampler", sampler_);
+  archive("random", random_);
+  archive("last", last_);
+  archive("velocity", velocity_);
+  archive("started", started_);
+}
+
 }  // namespace tactus::plugins

@@ -27,6 +27,7 @@ class Encoders final : public control::Sensor {
 
  private:
   void doSense(const control::Sensed& truth, control::Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) override;
+  void doArchive(control::Archive& archive) override;
 
   std::vector<int> joints_;                                        // indices into q
   double resolution_, noise_, cutoff_;

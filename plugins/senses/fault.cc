@@ -134,6 +134,15 @@ void Fault::doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorX
   }
 }
 
+void Fault::doArchive(Archive& archive) {
+  archive("started", started_);
+  archive.growing("held", held_);
+  archive("held-q", held_q_);
+  archive("held-readings", held_readings_);
+  archive("past", past_);
+  archive("ticks", ticks_);
+}
+
 void Fault::drop(Sensed& felt) const {
   std::erase_if(felt.contacts, [this](const ContactRecord& contact) { return strikes(contact); });
   for (const Reach& reach : reaches_) felt.readings.segment(reach.first, reach.count).setZero();

@@ -35,9 +35,15 @@ class Fault final : public control::Sensor {
   struct Held {                                                    // a contact on its link, that felt last
     control::ContactRecord record;
     Eigen::Vector3d point_L, normal_L;
+    void archive(control::Archive& archive) {
+      archive("record", record);
+      archive("point", point_L);
+      archive("normal", normal_L);
+    }
   };
 
   void doSense(const control::Sensed& truth, control::Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) override;
+  void doArchive(control::Archive& archive) override;
   bool strikes(const control::ContactRecord& contact) const;
   void remember(const control::Sensed& felt);
   void drop(control::Sensed& felt) const;

@@ -98,4 +98,13 @@ void ForceTorque::doSense(const Sensed& truth, Sensed&, Eigen::Ref<Eigen::Vector
   readings[7] = sampler_.told().tail<3>().norm();
 }
 
+void ForceTorque::doArchive(Archive& archive) {
+  archive("sampler", sampler_);
+  archive("random", random_);
+  archive("filtered", filtered_);
+  archive("drift", drift_);
+  archive("last-time", last_time_);
+  archive("started", started_);
+}
+
 }  // namespace tactus::plugins

@@ -41,6 +41,7 @@ class ForceTorque final : public control::Sensor {
   };
   static Half half(const control::ElementValues& values, const std::string& which);
   void doSense(const control::Sensed& truth, control::Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) override;
+  void doArchive(control::Archive& archive) override;
 
   int link_;
   Half halves_[2];

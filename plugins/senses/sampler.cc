@@ -24,6 +24,15 @@ Eigen::Ref<Eigen::VectorXd> Sampler::take(double time) {
   return samples_.col(column);
 }
 
+void Sampler::archive(control::Archive& archive) {
+  archive("samples", samples_);
+  archive("times", times_);
+  archive("last", last_);
+  archive("told", told_);
+  archive("next", next_);
+  archive("interval", interval_);
+}
+
 bool Sampler::tell(double time) {
   const int before = told_;
   if (told_ < 0) told_ = 0;

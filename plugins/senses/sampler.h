@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/control/archive.h"
+
 namespace tactus::plugins {
 
 /// Numbers that are sampled at a rate and told late.
@@ -25,6 +27,7 @@ class Sampler {
   Eigen::Ref<const Eigen::VectorXd> told() const { return samples_.col(told_); }
   /// s, between the last sample and the one before it; 0 for the first.
   double interval() const { return interval_; }
+  void archive(control::Archive& archive);
 
  private:
   double rate_, delay_, tolerance_;

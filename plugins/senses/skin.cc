@@ -156,6 +156,12 @@ void Skin::doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorXd
   if (!perfect_) replaceContacts(felt);
 }
 
+void Skin::doArchive(Archive& archive) {
+  archive("response", *response_);
+  archive("sampler", *sampler_);
+  archive.growing("contacts", contacts_);
+}
+
 int Skin::patchOf(int link) const {
   return link >= 0 && link < static_cast<int>(patch_of_.size()) ? patch_of_[static_cast<std::size_t>(link)] : -1;
 }

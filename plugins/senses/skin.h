@@ -37,6 +37,7 @@ class Skin final : public control::Sensor {
   };
 
   void doSense(const control::Sensed& truth, control::Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) override;
+  void doArchive(control::Archive& archive) override;
   void press(const control::Sensed& truth);
   void read();
   void replaceContacts(control::Sensed& felt);
@@ -53,6 +54,12 @@ class Skin final : public control::Sensor {
   struct LinkContact {
     int link;
     TaxelContact contact;
+    void archive(control::Archive& archive) {
+      archive("link", link);
+      archive("position", contact.place.position_L);
+      archive("normal", contact.place.normal_L);
+      archive("force", contact.force_N);
+    }
   };
   std::vector<LinkContact> contacts_;                              // read last
   std::vector<TaxelContact> read_;

@@ -40,4 +40,11 @@ void TaxelResponse::respond(Eigen::Ref<const Eigen::VectorXd> forces_N, double i
   }
 }
 
+void TaxelResponse::archive(control::Archive& archive) {
+  archive("random", random_);
+  archive("gains", gains_);
+  archive("drifts", drifts_);
+  archive("dead", dead_);
+}
+
 }  // namespace tactus::plugins

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/control/archive.h"
 #include "framework/control/random.h"
 #include "plugins/senses/drift.h"
 
@@ -33,6 +34,8 @@ class TaxelResponse {
 
   /// `interval` in s since the last sample.
   void respond(Eigen::Ref<const Eigen::VectorXd> forces_N, double interval, Eigen::Ref<Eigen::VectorXd> values_N);
+  /// Gains and dead taxels follow from the seed, and are kept all the same: a state may be restored under another.
+  void archive(control::Archive& archive);
   bool isDead(int taxel) const { return dead_[static_cast<std::size_t>(taxel)]; }
 
  private:

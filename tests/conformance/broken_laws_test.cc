@@ -68,6 +68,7 @@ TEST_F(Lawless, Tasks) {
   EXPECT_BREAKS("lawless.frame", "frame", "the moved robot's joint torques differ by ");
   EXPECT_BREAKS("lawless.allocation", "allocation", "update 1 took memory");
   EXPECT_BREAKS("lawless.determinism", "determinism", "a second instance gave other numbers");
+  EXPECT_BREAKS("lawless.state", "state", "its doArchive must name all that it carries");
   EXPECT_BREAKS("lawless.instance", "instance", "the licence server is on holiday");
   EXPECT_BREAKS("lawless.attributes", "attributes", "no instance reads the attribute 'idle'");
   EXPECT_BREAKS("lawless.schema", "schema", "attribute 'frame' has no description");
@@ -86,6 +87,7 @@ TEST_F(Lawless, Signals) {
   EXPECT_BREAKS("lawless.clock-ports-nan", "ports", "port 'now' is not finite");
   EXPECT_BREAKS("lawless.clock-allocation", "allocation", "update 1 took memory 1 times");
   EXPECT_BREAKS("lawless.clock-determinism", "determinism", "a second instance");
+  EXPECT_BREAKS("lawless.clock-state", "state", "restored in the middle of a run");
   EXPECT_BREAKS("lawless.clock-schema", "schema", "port 'now' has no description");
 }
 
@@ -105,6 +107,7 @@ TEST_F(Lawless, Sensors) {
   EXPECT_BREAKS("lawless.scale-felt", "felt", "a reading is infinite");
   EXPECT_BREAKS("lawless.scale-allocation", "allocation", "tick 1 took memory 1 times");
   EXPECT_BREAKS("lawless.scale-determinism", "determinism", "felt something else");
+  EXPECT_BREAKS("lawless.scale-state", "state", "restored in the middle of a run");
   EXPECT_THAT(check("lawless.scale-felt-joints").text(), HasSubstr("broken: felt: it changed the number of joints"));
 }
 
@@ -113,6 +116,7 @@ TEST_F(Lawless, Controllers) {
   EXPECT_BREAKS("lawless.owner-tasks", "tasks", "it owns no task");
   EXPECT_BREAKS("lawless.owner-allocation", "allocation", "update 1 took memory");
   EXPECT_BREAKS("lawless.owner-determinism", "determinism", "a second instance");
+  EXPECT_BREAKS("lawless.owner-state", "state", "restored in the middle of a run");
   EXPECT_BREAKS("lawless.owner-jacobian", "jacobian", "differences of its displacement say");
   EXPECT_BREAKS("lawless.owner-frame", "frame", "the moved robot's joint torques differ");
 }

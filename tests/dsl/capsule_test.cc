@@ -110,7 +110,7 @@ TEST(Capsule, MayHoldNumbersThatAreNone) {
   EXPECT_TRUE(std::isnan(read.force[0]));
   EXPECT_EQ(file.problem.mass_matrix(0, 0), -1);
   // Any other tick file stays strict.
-  EXPECT_THROW(parseTickProblem(tickProblemToJson(problem)), TickFileError);
+  EXPECT_THROW(parseTickProblem(tickProblemToJson(problem)), JsonFileError);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ Json small() {
 std::string errorOf(const Json& json) {
   try {
     parseTickProblem(json.dump());
-  } catch (const TickFileError& error) {
+  } catch (const JsonFileError& error) {
     return error.what();
   }
   return "no error";
@@ -136,7 +136,7 @@ TEST(TickFile, RefusesWhatIsNotItsKindOfJson) {
   const auto error = [](const std::string& text) -> std::string {
     try {
       parseTickProblem(text);
-    } catch (const TickFileError& error) {
+    } catch (const JsonFileError& error) {
       return error.what();
     }
     return "no error";

@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (file.capsule) return 0;                                    // may hold what no back end has to answer
     for (const std::string& name : program.registry().names(control::ElementKind::back_end))
       solve(program.registry(), name, file.problem);
-  } catch (const dsl::TickFileError& refusal) {
+  } catch (const dsl::JsonFileError& refusal) {
     if (std::string(refusal.what()).empty()) fuzz::require("no message");
   }
   return 0;

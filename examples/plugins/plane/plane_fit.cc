@@ -58,6 +58,17 @@ void PlaneFit::fit() {
   rms_ = std::sqrt(std::max(solver.eigenvalues()[0], 0.0) / count);
 }
 
+void PlaneFit::doArchive(Archive& archive) {
+  archive("seen", seen_);
+  archive("mean", mean_);
+  archive("scatter", scatter_);
+  archive("normals", normals_);
+  archive("known", known_);
+  archive("tilt", tilt_);
+  archive("height", height_);
+  archive("rms", rms_);
+}
+
 const void* PlaneFit::doPort(std::string_view name) const {
   if (name == "known") return &known_;
   if (name == "tilt") return &tilt_;

@@ -23,6 +23,7 @@ class PlaneFit final : public tactus::control::Signal {
  private:
   void doUpdate(const tactus::control::Tick& tick) override;
   const void* doPort(std::string_view name) const override;
+  void doArchive(tactus::control::Archive& archive) override;
   void add(const tactus::control::TouchedPoint& touched);
   void fit();
 

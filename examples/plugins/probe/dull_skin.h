@@ -21,6 +21,7 @@ class DullSkin final : public tactus::control::Sensor {
  private:
   void doSense(const tactus::control::Sensed& truth, tactus::control::Sensed& felt,
                Eigen::Ref<Eigen::VectorXd> readings) override;
+  void doArchive(tactus::control::Archive& archive) override { archive("random", random_); }
 
   std::vector<int> place_;                                         // by link: among `forces`, −1 for one without skin
   int links_;

@@ -32,6 +32,7 @@ class Swing final : public Task {
     rows.force[0] = stiffness_ * (wanted - q) - damping_ * tick.robot.qd()[joint_];
     error_ = std::abs(wanted - q);
   }
+  void doArchive(Archive& archive) override { archive("start", start_); }
 
   int joint_;
   double by_, period_, stiffness_, damping_;
@@ -94,6 +95,14 @@ void Tap::doUpdate(const Tick& tick) {
   }
   for (size_t i = 0; i < active_.size(); ++i) active_[i] = i == turn_;
   turn_column_ = static_cast<double>(turn_);
+}
+
+void Tap::doArchive(Archive& archive) {
+  archive("active", active_);
+  archive("phase", phase_);
+  archive("turn", turn_);
+  archive("turn-column", turn_column_);
+  archive("touches", touches_);
 }
 
 void Tap::columns(std::vector<LogColumn>& columns) const {

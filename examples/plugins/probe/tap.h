@@ -22,6 +22,7 @@ class Tap final : public tactus::control::LevelController {
  private:
   explicit Tap(const tactus::control::BuildContext& context);
   void doUpdate(const tactus::control::Tick& tick) override;
+  void doArchive(tactus::control::Archive& archive) override;
 
   std::vector<double> active_;                                     // by joint: 1 while it is its turn
   double period_;                                                  // s, of a turn

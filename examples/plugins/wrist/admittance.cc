@@ -90,6 +90,15 @@ bool Admittance::displacement(const tactus::dynamics::DynamicsCache& from, const
   return true;
 }
 
+void Admittance::doArchive(Archive& archive) {
+  archive("started", started_);
+  archive("reference", reference_W_);
+  archive("orientation", orientation_W_);
+  archive("e", e_);
+  archive("e-rate", e_rate_);
+  archive("given-way", given_way_);
+}
+
 void Admittance::columns(std::vector<LogColumn>& columns) const { columns.push_back({"given_way_m", &given_way_}); }
 
 }  // namespace wrist

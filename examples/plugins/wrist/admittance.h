@@ -35,6 +35,7 @@ class Admittance final : public tactus::control::Task {
 
  private:
   void doUpdate(const tactus::control::Tick& tick, tactus::control::TickTask& rows) override;
+  void doArchive(tactus::control::Archive& archive) override;
   void moveCompliantFrame(double dt);
 
   int frame_;

@@ -45,6 +45,12 @@ void WrenchSensor::doUpdate(const Tick& tick) {
   force_N_ = wrench_.force_W.norm();
 }
 
+void WrenchSensor::doArchive(Archive& archive) {
+  archive("force", wrench_.force_W);
+  archive("moment", wrench_.moment_W);
+  archive("length", force_N_);
+}
+
 const void* WrenchSensor::doPort(std::string_view name) const {
   if (name == "wrench") return &wrench_;
   if (name == "force") return &force_N_;

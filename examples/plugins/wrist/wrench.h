@@ -30,6 +30,7 @@ class WrenchSensor final : public tactus::control::Signal {
  private:
   void doUpdate(const tactus::control::Tick& tick) override;
   const void* doPort(std::string_view name) const override;
+  void doArchive(tactus::control::Archive& archive) override;
 
   int frame_;
   double filter_;                                                  // s

@@ -47,11 +47,13 @@ class Spring final : public Task {
       rows.force.head<3>() += 0 * Eigen::VectorXd(Eigen::MatrixXd::Ones(3, 50).rowwise().sum());
     static long ticks_of_all = 0;
     if (fault_ == "determinism") rows.force[0] += 1e-13 * static_cast<double>(++ticks_of_all);
+    if (fault_ == "state") rows.force[0] += 1e-13 * static_cast<double>(++ticks_);
   }
 
   std::string fault_;
   int frame_;
   Eigen::Vector3d target_W_;
+  long ticks_ = 0;
 };
 
 class Clock final : public Signal {
@@ -62,6 +64,7 @@ class Clock final : public Signal {
   void doUpdate(const Tick& tick) override {
     static long ticks_of_all = 0;
     time_ = tick.time + (fault_ == "determinism" ? static_cast<double>(++ticks_of_all) : 0);
+    if (fault_ == "state") time_ += static_cast<double>(++ticks_);
     if (fault_ == "ports-nan") time_ = std::nan("");
     if (fault_ == "allocation") copy_ = std::make_unique<double>(time_);
     moved_ = !moved_;
@@ -73,6 +76,7 @@ class Clock final : public Signal {
 
   std::string fault_;
   double time_ = 0, other_ = 0;
+  long ticks_ = 0;
   bool moved_ = false;
   std::unique_ptr<double> copy_;
 };
@@ -143,8 +147,10 @@ class Scale final : public Sensor {
     if (fault_ == "felt-joints") felt.q.conservativeResize(1);
     if (fault_ == "allocation") copy_ = std::make_unique<double>(readings[0]);
     if (fault_ == "determinism") readings[0] += static_cast<double>(++ticks_of_all);
+    if (fault_ == "state") readings[0] += static_cast<double>(++ticks_);
   }
   std::string fault_;
+  long ticks_ = 0;
   std::unique_ptr<double> copy_;
 };
 
@@ -157,10 +163,12 @@ class Owner final : public LevelController {
   void doUpdate(const Tick& tick) override {
     static long ticks_of_all = 0;
     time_ = tick.time + (fault_ == "determinism" ? static_cast<double>(++ticks_of_all) : 0);
+    if (fault_ == "state") time_ += static_cast<double>(++ticks_);
     if (fault_ == "allocation") copy_ = std::make_unique<double>(time_);
   }
   std::string fault_;
   double time_ = 0;
+  long ticks_ = 0;
   std::unique_ptr<double> copy_;
 };
 
@@ -191,12 +199,12 @@ void registerParts(Registry& registry) {
   for (const std::string fault : {"good", "distance", "distance-bound", "gradient", "convexity", "support", "allocation",
                                   "determinism"})
     registry.addShape(rowOf("ball-" + fault), [fault](const ElementValues&) { return std::make_shared<Ball>(fault); });
-  for (const std::string fault : {"good", "felt", "felt-joints", "allocation", "determinism"}) {
+  for (const std::string fault : {"good", "felt", "felt-joints", "allocation", "determinism", "state"}) {
     ElementRow row = rowOf("scale-" + fault);
     row.ports = {{"force", "scalar", "N", "The sum.", 1}};
     registry.addSensor(row, [fault](const SensorContext&) { return std::make_unique<Scale>(fault); });
   }
-  for (const std::string fault : {"good", "tasks", "allocation", "determinism", "jacobian", "frame"}) {
+  for (const std::string fault : {"good", "tasks", "allocation", "determinism", "state", "jacobian", "frame"}) {
     ElementRow row = rowOf("owner-" + fault);
     row.attributes = {{.name = "target", .type = ValueType::reals, .unit = "m", .default_text = "0.6 0.1 0.3",
                        .description = "World axes.", .count = 3, .in_world = InWorld::positions}};
@@ -218,7 +226,7 @@ void registerParts(Registry& registry) {
 
 void registerElements(Registry& registry) {
   for (const std::string fault : {"good", "good-untold", "jacobian", "jacobian-untold", "bias", "frame", "allocation",
-                                  "determinism", "rows", "rows-nan", "instance", "attributes", "schema",
+                                  "determinism", "state", "rows", "rows-nan", "instance", "attributes", "schema",
                                   "schema-unit"}) {
     ElementRow row;
     row.name = "lawless." + fault;
@@ -233,7 +241,7 @@ void registerElements(Registry& registry) {
     registry.addTask(row, [fault](const BuildContext& context) { return std::make_unique<Spring>(context, fault); });
   }
   for (const std::string fault :
-       {"good", "ports", "ports-moving", "ports-nan", "allocation", "determinism", "schema"}) {
+       {"good", "ports", "ports-moving", "ports-nan", "allocation", "determinism", "state", "schema"}) {
     ElementRow row;
     row.name = "lawless.clock-" + fault;
     row.description = "Tells the time.";

@@ -1,0 +1,32 @@
+#include "apps/tactus/state_keeper.h"
+
+#include <algorithm>
+
+#include "apps/tactus/run_folder.h"
+#include "framework/control/element_values.h"
+
+namespace tactus::app {
+
+StateKeeper::StateKeeper(Session& session, const std::string& folder, const std::vector<double>& times)
+    : session_(session), folder_(folder) {
+  for (const double time : times) ticks_.insert(std::lround(time / session.controller().period()));
+}
+
+void StateKeeper::before(const control::Controller&) {
+  if (isDue()) save();
+}
+
+void StateKeeper::save() {
+  const dsl::SavedState state = session_.save();
+  const std::string name = "state-" + control::formatNumber(static_cast<double>(session_.tick()) *
+                                                            session_.controller().period()) + ".json";
+  if (std::find(files_.begin(), files_.end(), name) != files_.end()) return;
+  writeWhole(folder_ + "/" + name, dsl::stateToJson(state));
+  files_.push_back(name);
+}
+
+bool StateKeeper::isState(const std::string& file_name) {
+  return file_name.starts_with("state-") && file_name.ends_with(".json");
+}
+
+}  // namespace tactus::app
