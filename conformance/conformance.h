@@ -33,7 +33,7 @@
 ///   allocation   an update takes no memory.
 ///   determinism  two instances give the same bytes for the same inputs, also after a third one was given others.
 ///   state        an instance that went another way and is then restored from one in the middle of its run goes on as
-///                that one does, to the byte: its doArchive names all that it carries.
+///                that one does, to the byte: its doArchive names all that it carries.  Asked where determinism is kept.
 ///
 /// of each sensor
 ///   felt         joints keep their number, contacts are at links of the robot, readings are finite or NaN.

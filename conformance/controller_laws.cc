@@ -86,7 +86,8 @@ void checkController(const Subject& subject, Report& report) {
   if (report.findings.back().outcome == Outcome::broken) return;
   judge(subject, "allocation", report, [&] { checkAllocation(subject); });
   judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
-  judge(subject, "state", report, [&] { checkState(subject); });
+  if (report.findings.back().outcome == Outcome::kept)
+    judge(subject, "state", report, [&] { checkState(subject); });
   checkTasks(subject, report);
 }
 

@@ -155,7 +155,8 @@ void checkSensor(const Subject& subject, Report& report) {
   judge(subject, "felt", report, [&] { checkFelt(subject); });
   judge(subject, "allocation", report, [&] { checkAllocation(subject); });
   judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
-  judge(subject, "state", report, [&] { checkState(subject); });
+  if (report.findings.back().outcome == Outcome::kept)
+    judge(subject, "state", report, [&] { checkState(subject); });
 }
 
 }  // namespace tactus::conformance

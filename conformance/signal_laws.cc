@@ -119,7 +119,8 @@ void checkSignal(const Subject& subject, Report& report) {
   if (report.findings.back().outcome == Outcome::broken) return;   // nobody can read them
   judge(subject, "allocation", report, [&] { checkAllocation(subject); });
   judge(subject, "determinism", report, [&] { checkDeterminism(subject); });
-  judge(subject, "state", report, [&] { checkState(subject); });
+  if (report.findings.back().outcome == Outcome::kept)
+    judge(subject, "state", report, [&] { checkState(subject); });
 }
 
 }  // namespace tactus::conformance

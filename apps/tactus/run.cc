@@ -57,8 +57,8 @@ std::optional<dsl::SavedState> stateOf(const std::string& file) {
 void goOnFrom(const dsl::SavedState& state, const std::string& file, Session& session) {
   const double duration = session.stack().run.duration;
   if (state.time >= duration - 0.5 * session.controller().period())
-    throw UsageError("the state is of t = " + control::formatNumber(state.time) + " s, and the run ends at " +
-                     control::formatNumber(duration) + " s: give a longer --duration, counted from 0");
+    throw UsageError("the state is of t = " + timeText(state.time) + " s, and the run ends at " +
+                     timeText(duration) + " s: give a longer --duration, counted from 0");
   try {
     for (const std::string& note : session.restore(state)) std::cerr << "tactus run: " << file << ": " << note << "\n";
   } catch (const control::StateError& error) {
@@ -72,8 +72,8 @@ std::vector<double> saveTimes(const RunArguments& arguments, const Session& sess
   const double from = session.time(), until = session.stack().run.duration;
   for (const double time : times)
     if (!(time >= from && time <= until))
-      throw UsageError("--save-at " + control::formatNumber(time) + ": the run goes from " + control::formatNumber(from) +
-                       " to " + control::formatNumber(until) + " s");
+      throw UsageError("--save-at " + timeText(time) + ": the run goes from " + timeText(from) +
+                       " to " + timeText(until) + " s");
   return times;
 }
 
@@ -82,7 +82,7 @@ std::string folderOf(const RunArguments& arguments, const Session& session, cons
   if (arguments.from.empty())
     return arguments.out.empty() ? defaultRunFolder(session.stack(), label) : arguments.out;
   const std::string folder = arguments.out.empty() ? defaultRunFolder(session.stack(), label) + "-from" +
-                                                         control::formatNumber(session.time())
+                                                         timeText(session.time())
                                                    : arguments.out;
   std::error_code error;
   const std::filesystem::path of_state = std::filesystem::absolute(arguments.from).parent_path();

@@ -1,9 +1,10 @@
 #include "apps/tactus/state_keeper.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/tactus/run_folder.h"
-#include "framework/control/element_values.h"
+#include "apps/tactus/text.h"
 
 namespace tactus::app {
 
@@ -18,8 +19,7 @@ void StateKeeper::before(const control::Controller&) {
 
 void StateKeeper::save() {
   const dsl::SavedState state = session_.save();
-  const std::string name = "state-" + control::formatNumber(static_cast<double>(session_.tick()) *
-                                                            session_.controller().period()) + ".json";
+  const std::string name = "state-" + timeText(session_.time()) + ".json";
   if (std::find(files_.begin(), files_.end(), name) != files_.end()) return;
   writeWhole(folder_ + "/" + name, dsl::stateToJson(state));
   files_.push_back(name);

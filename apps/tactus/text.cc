@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/tactus/command.h"
+#include "framework/control/element_values.h"
 
 namespace tactus::app {
 namespace {
@@ -87,6 +88,8 @@ std::string textTable(const std::vector<std::vector<std::string>>& rows) {
   }
   return text;
 }
+
+std::string timeText(double seconds) { return control::formatNumber(std::round(seconds * 1e9) / 1e9); }
 
 std::string jsonText(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

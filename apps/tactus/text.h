@@ -22,6 +22,9 @@ std::string counted(size_t count, const std::string& one, const std::string& man
 /// `value` with `digits` significant digits, never in another locale; "–" for NaN.
 std::string rounded(double value, int digits = 4);
 
+/// A simulated time to the nanosecond, without the rounding of sums: "0.35".
+std::string timeText(double seconds);
+
 /// A table with aligned columns: the first to the left, all others to the right; the first row is the head.
 std::string textTable(const std::vector<std::vector<std::string>>& rows);
 
