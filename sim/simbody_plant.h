@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/description/faults.h"
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
 #include "framework/runtime/plant.h"
@@ -19,6 +20,12 @@ struct PlantOptions {
   /// Links, each once, whose wrenches `sense` tells (see link_wrenches.h): as they were when the last step began, none
   /// before the first.
   std::vector<int> wrench_links;
+  /// Of links and of objects that forces move; whoever controls the robot does not know.  Velocities stay as they are
+  /// when a mass changes.
+  std::vector<description::WrongMass> wrong_masses;
+  /// On links and on objects that forces move, each held over a step; a step that it covers in part feels that part of
+  /// it, so that the impulse is right.
+  std::vector<description::Shove> shoves;
 };
 
 /// The robot in its scene, simulated by Simbody (tree, free bodies, gravity, forward dynamics) with Tactus's own contact
@@ -40,6 +47,8 @@ class SimbodyPlant final : public runtime::Plant {
   /// taken: PlantError says joint, value and time, and `sense` shows the last good step.
   void advance(const Eigen::VectorXd& torque, double duration) override;
   std::span<const control::ObjectMotion> objects() const override;
+  /// Wrong masses, then shoves.
+  void faults(std::vector<const control::FaultRecord*>& records) const override;
 
  private:
   class Implementation;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <string>
 #include <vector>
 
 /// What the robot feels at one instant: plain data from the plant to the controller.
@@ -30,6 +32,23 @@ struct LinkWrench {
   int link = -1;                                                   ///< index into description::Robot::links
   Eigen::Vector3d force_L = Eigen::Vector3d::Zero();               ///< N, link axes
   Eigen::Vector3d moment_L = Eigen::Vector3d::Zero();              ///< N m, link axes, about the link's origin
+};
+
+/// Something that was asked to go wrong, and when it did.
+struct FaultRecord {
+  std::string name;
+  std::string kind;                                                ///< "shove", "torque-loss", "stuck", …
+  bool strikes = false;                                            ///< now
+  double began = std::numeric_limits<double>::quiet_NaN();         ///< s, the first time; NaN: it never did
+  double ended = std::numeric_limits<double>::quiet_NaN();         ///< s, the last time; NaN: it did not
+
+  /// What is so from `time` on.
+  void note(double time, bool strikes_now) {
+    if (strikes_now == strikes) return;
+    if (strikes_now && !(began <= time)) began = time;
+    ended = strikes_now ? std::numeric_limits<double>::quiet_NaN() : time;
+    strikes = strikes_now;
+  }
 };
 
 struct Sensed {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "framework/control/element_table.h"
@@ -28,6 +29,12 @@ class Sensor {
   /// Links, indices into description::Robot::links, whose LinkWrench it reads in `truth`.  A plant that cannot tell
   /// it, or not yet, leaves it out.
   virtual std::vector<int> wrenchLinks() const { return {}; }
+  /// Of a sensor that makes others go wrong: its kind, and whether it strikes in this tick; null where it is none.
+  struct Fault {
+    std::string kind;
+    bool strikes = false;
+  };
+  virtual const Fault* fault() const { return nullptr; }
 
  private:
   virtual void doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) = 0;

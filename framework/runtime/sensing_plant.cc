@@ -34,7 +34,15 @@ SensingPlant::SensingPlant(std::unique_ptr<Plant> plant, std::vector<NamedSensor
   for (const NamedSensor& sensor : sensors_) readings += countOf(sensor.rows);
   felt_.contacts.reserve(control::SensingGuard::contact_capacity);
   felt_.readings.setZero(readings);
+  for (const NamedSensor& named : sensors_)
+    faults_.push_back({named.name, named.sensor->fault() ? named.sensor->fault()->kind : ""});
   feel();
+}
+
+void SensingPlant::faults(std::vector<const control::FaultRecord*>& records) const {
+  plant_->faults(records);
+  for (const control::FaultRecord& record : faults_)
+    if (!record.kind.empty()) records.push_back(&record);
 }
 
 void SensingPlant::advance(const Eigen::VectorXd& torque, double duration) {
@@ -50,7 +58,8 @@ void SensingPlant::feel() {
   felt_.qd = truth.qd;
   felt_.contacts.assign(truth.contacts.begin(), truth.contacts.end());
   int at = 0;
-  for (const NamedSensor& named : sensors_) {
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    const NamedSensor& named = sensors_[i];
     const int count = countOf(named.rows);
     try {
       named.sensor->sense(truth, felt_, felt_.readings.segment(at, count));
@@ -59,6 +68,7 @@ void SensingPlant::feel() {
     } catch (...) {
       fail(named, truth.time, "it threw something that is not a std::exception");
     }
+    if (const control::Sensor::Fault* fault = named.sensor->fault()) faults_[i].note(truth.time, fault->strikes);
     at += count;
   }
 }
