@@ -44,13 +44,13 @@ const std::string everything = R"(<stack format="1" name="whole">
       <sphere radius="0.15"/><at time="0.77" by="0 0 0.17"/></object>
   </scene>
   <faults>
-    <torque-loss name="weak" joints="a1 a3" factor="0.41" from="0.11" until="0.81"/>
-    <torque-stuck name="frozen" joints="a2" from="0.12" until="0.82"/>
-    <torque-delay name="late" joints="a4" delay="0.004" from="0.13" until="0.83"/>
-    <wrong-mass name="load" link="link_7" factor="1.41" added="0.42" point="0 0 0.043" from="0.14" until="0.84"/>
-    <wrong-mass name="lead" object="loose" factor="1.43" from="0.141" until="0.841"/>
-    <shove name="push" object="loose" force="0 0 4.5" moment="0 0 0.46" point="0 0 0.047" from="0.15" until="0.85"/>
-    <shove name="kick" link="link_7" impulse="0 0 4.8" until="0.86"/>
+    <torque-loss name="weak" joints="a1 a3" factor="0.41" from="0.161" until="0.871"/>
+    <torque-stuck name="frozen" joints="a2" from="0.162" until="0.872"/>
+    <torque-delay name="late" joints="a4" delay="0.004" from="0.163" until="0.873"/>
+    <wrong-mass name="load" link="flange" factor="1.41" added="0.42" point="0 0 0.043" from="0.164" until="0.874"/>
+    <wrong-mass name="lead" object="loose" factor="1.43" from="0.166" until="0.876"/>
+    <shove name="push" object="loose" force="0 0 4.5" moment="0 0 0.46" point="0 0 0.047" from="0.165" until="0.875"/>
+    <shove name="kick" link="flange" impulse="0 0 4.8" until="0.877"/>
   </faults>
   <signals><test.probe name="a"/></signals>
   <level priority="2" weight="5" strict="false" active="true" active-from="0.1" active-until="0.8" active-ramp="0.2">
@@ -140,34 +140,34 @@ const std::vector<Change> changes{
     {"torque-loss/name", "weak", "feeble"},
     {"torque-loss/joints", "a1 a3", "a1"},
     {"torque-loss/factor", "\"0.41\"", "\"0.51\""},
-    {"torque-loss/from", "\"0.11\"", "\"0.21\""},
-    {"torque-loss/until", "\"0.81\"", "\"0.91\""},
+    {"torque-loss/from", "\"0.161\"", "\"0.261\""},
+    {"torque-loss/until", "\"0.871\"", "\"0.971\""},
     {"torque-stuck/name", "frozen", "cold"},
     {"torque-stuck/joints", "joints=\"a2\"", "joints=\"all\""},
-    {"torque-stuck/from", "\"0.12\"", "\"0.22\""},
-    {"torque-stuck/until", "\"0.82\"", "\"0.92\""},
+    {"torque-stuck/from", "\"0.162\"", "\"0.262\""},
+    {"torque-stuck/until", "\"0.872\"", "\"0.972\""},
     {"torque-delay/name", "name=\"late\"", "name=\"slow\""},
     {"torque-delay/joints", "joints=\"a4\"", "joints=\"a5\""},
     {"torque-delay/delay", "\"0.004\"", "\"0.006\""},
-    {"torque-delay/from", "\"0.13\"", "\"0.23\""},
-    {"torque-delay/until", "\"0.83\"", "\"0.93\""},
+    {"torque-delay/from", "\"0.163\"", "\"0.263\""},
+    {"torque-delay/until", "\"0.873\"", "\"0.973\""},
     {"wrong-mass/name", "name=\"load\"", "name=\"weight\""},
-    {"wrong-mass/link", "link=\"link_7\" factor", "link=\"link_6\" factor"},
+    {"wrong-mass/link", "link=\"flange\" factor", "link=\"lwr_6\" factor"},
     {"wrong-mass/object", "object=\"loose\" factor", "object=\"table\" factor"},
     {"wrong-mass/factor", "1.41", "1.51"},
     {"wrong-mass/added", "\"0.42\"", "\"0.52\""},
     {"wrong-mass/point", "0.043", "0.053"},
-    {"wrong-mass/from", "\"0.14\"", "\"0.24\""},
-    {"wrong-mass/until", "\"0.84\"", "\"0.94\""},
+    {"wrong-mass/from", "\"0.164\"", "\"0.264\""},
+    {"wrong-mass/until", "\"0.874\"", "\"0.974\""},
     {"shove/name", "name=\"push\"", "name=\"hit\""},
-    {"shove/link", "link=\"link_7\" impulse", "link=\"link_6\" impulse"},
+    {"shove/link", "link=\"flange\" impulse", "link=\"lwr_6\" impulse"},
     {"shove/object", "object=\"loose\" force", "object=\"table\" force"},
     {"shove/force", "0 0 4.5", "0 0 5.5"},
     {"shove/moment", "0.46", "0.56"},
     {"shove/impulse", "4.8", "5.8"},
     {"shove/point", "0.047", "0.057"},
-    {"shove/from", "\"0.15\"", "\"0.25\""},
-    {"shove/until", "\"0.85\"", "\"0.95\""},
+    {"shove/from", "\"0.165\"", "\"0.265\""},
+    {"shove/until", "\"0.875\"", "\"0.975\""},
     {"level/priority", "priority=\"2\"", "priority=\"3\""},
     {"level/weight", "weight=\"5\"", "weight=\"6\""},
     {"level/strict", "backend=\"all\"", "backend=\"none\""},       // which refuses strict levels: see below

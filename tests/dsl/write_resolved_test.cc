@@ -95,7 +95,7 @@ const std::string rich =
     "<object name=\"bump\" on=\"table\" pose=\"0.04 0.04 -0.015\"><capsule radius=\"${k}\" "
     "length=\"0.2\"/></object></scene>\n"
     "<faults><torque-loss name=\"f1\" joints=\"a1\n a2\" factor=\"${k}\" until=\"2\"/>"
-    "<shove name=\"f2\" link=\"link_7\" impulse=\"0 0 ${k}\" until=\"0.5\"/></faults>\n"
+    "<shove name=\"f2\" link=\"flange\" impulse=\"0 0 ${k}\" until=\"0.5\"/></faults>\n"
     "<signals><test.probe name=\"t\"/></signals>\n"
     "<level priority=\"1\" strict=\"true\" active-from=\"${k}\"><test.pull name=\"p\" active=\"t.value\" active-ramp=\"0\" class=\"soft\" "
     "joints=\"a1\n  a2\" "
