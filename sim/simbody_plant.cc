@@ -86,6 +86,7 @@ class SimbodyPlant::Implementation {
         contact_(makeContact(robot)),
         q_(checkedStart(robot, start_q)),
         qd_(Eigen::VectorXd::Zero(robot_.dof())),
+        speed_limits_(speedLimits(robot)),
         resistance_(robot, effectiveInertia(), options.step),
         joint_torque_(robot_.dof()),
         mobility_forces_(now_->state.getNU(), 0.0),
@@ -297,6 +298,16 @@ class SimbodyPlant::Implementation {
                                   print(joint.upper));
     }
     return start_q;
+  }
+
+  /// A limit of 0 or below is none: files have it where nobody knew.
+  Eigen::VectorXd speedLimits(const description::Robot& robot) const {
+    Eigen::VectorXd limits = Eigen::VectorXd::Constant(robot_.dof(), options_.velocity_limit);
+    const std::vector<int> moving = robot.movingJoints();
+    for (int i = 0; i < robot_.dof(); ++i)
+      if (const double own = robot.joints[moving[i]].velocity; own > 0)
+        limits[i] = std::min(limits[i], options_.overspeed * own);
+    return limits;
   }
 
   void checkTorque(const Eigen::VectorXd& torque) const {
@@ -518,10 +529,10 @@ class SimbodyPlant::Implementation {
                                 " rad/s at t = " + print(roundedTime(steps_ + 1)) + " s. " + usual_causes);
     }
     int fastest = 0;
-    if (robot_.dof() == 0 || qd_.cwiseAbs().maxCoeff(&fastest) <= options_.velocity_limit) return;
+    if (robot_.dof() == 0 || (qd_.array().abs() / speed_limits_.array()).maxCoeff(&fastest) <= 1) return;
     throw runtime::PlantError("joint '" + names_[fastest].name + "' runs away: its speed reaches " +
                               print(qd_[fastest]) + " " + names_[fastest].unit + "/s at t = " +
-                              print(roundedTime(steps_ + 1)) + " s (limit " + print(options_.velocity_limit) + "). " +
+                              print(roundedTime(steps_ + 1)) + " s (limit " + print(speed_limits_[fastest]) + "). " +
                               usual_causes);
   }
 
@@ -554,6 +565,7 @@ class SimbodyPlant::Implementation {
   std::vector<BodyMotion> motions_;       // by mobilized body; 0 is Ground, which rests; then objects that follow a path
   ContactForce contact_;
   Eigen::VectorXd q_, qd_;
+  Eigen::VectorXd speed_limits_;                                   // rad/s or m/s, beyond which a joint runs away
   JointResistance resistance_;
   Eigen::VectorXd joint_torque_, last_q_, last_qd_;
   SimTK::Vector mobility_forces_, accelerations_;

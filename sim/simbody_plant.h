@@ -16,6 +16,7 @@ namespace tactus::sim {
 struct PlantOptions {
   double step = 0.25e-3;                                           ///< s, semi-explicit Euler
   double velocity_limit = 100;                ///< rad/s or m/s, of joints and places; beyond it the state is a runaway
+  double overspeed = 5;                       ///< times a joint's own velocity limit, where it has one; a runaway, too
   ContactOptions contact;
   /// Links, each once, whose wrenches `sense` tells (see link_wrenches.h): as they were when the last step began, none
   /// before the first.

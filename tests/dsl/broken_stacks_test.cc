@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"fault_unknown_object.xml", "E032", 8, 38,
                  "the scene has no object 'tabel'", "table"},
         Expected{"fault_with_gain.xml", "E014", 8, 40,
-                 "attribute 'factor': '1.5' is out of range: expected a number ≥ 0, ≤ 1"},
+                 "attribute 'factor': '1.5' is out of range: expected a number ≥ 0 and ≤ 1"},
         Expected{"fault_without_end.xml", "E022", 8, 36, "'impulse' needs 'until', too"},
         Expected{"include_cycle.xml", "E039", 3, 18, "'include_cycle.xml' includes itself, directly or through others"},
         Expected{"level_order.xml", "E021", 13, 20,
