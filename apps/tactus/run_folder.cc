@@ -54,12 +54,13 @@ ordered_json describeFeatures(const Session& session) {
   return features;
 }
 
-/// A fault that begins where the run ends never struck.
-ordered_json describeFaults(const Session& session, double simulated) {
+/// A fault that begins where the run ends in its time never struck.
+ordered_json describeFaults(const Session& session, const runtime::LoopResult& result) {
   ordered_json faults = ordered_json::array();
-  const double rounding = 1e-6 * session.controller().period();
+  const bool in_time = result.ending == runtime::Ending::done || result.ending == runtime::Ending::interrupted;
+  const double end = in_time ? result.simulated - 1e-6 * session.controller().period() : INFINITY;
   const auto timeOf = [&](double time) {
-    return time < simulated - rounding ? ordered_json(std::round(time * 1e9) / 1e9) : ordered_json();
+    return time < end ? ordered_json(std::round(time * 1e9) / 1e9) : ordered_json();
   };
   for (const control::FaultRecord* fault : session.faults())
     faults.push_back({{"name", fault->name},
@@ -174,7 +175,7 @@ ordered_json describeRun(const Session& session, const runtime::LoopResult& resu
                        {"primal", statistics.kkt_max.primal},
                        {"complementarity", statistics.kkt_max.complementarity}};
   }
-  json["faults"] = describeFaults(session, result.simulated);
+  json["faults"] = describeFaults(session, result);
   json["metrics"] = ordered_json::object();
   for (const control::Metric& metric : metrics) json["metrics"][metric.name] = metric.value;
   json["wanted"] = describeTargets(session.stack());
