@@ -55,8 +55,8 @@ AttributeRow inWorld(const std::string& name, const std::string& unit, const std
 ElementRow faultsRow() {
   return {.name = "faults",
           .kind = ElementKind::structure,
-          .description = "What goes wrong in a run, and when.  A <fault> here strikes what all sensors tell; torques go "
-                         "through the faults of torque in this order.",
+          .description = "What goes wrong in a run, and when.  A <fault> here strikes what all sensors tell; torques "
+                         "go through the faults of torque in this order.",
           .children = {{"torque-loss"}, {"torque-stuck"}, {"torque-delay"}, {"wrong-mass"}, {"shove"}, {"fault"},
                        {"include"}}};
 }

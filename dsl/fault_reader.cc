@@ -99,7 +99,8 @@ class FaultReader {
         if (object.mobility == description::Mobility::free || object.mobility == description::Mobility::held)
           return Body{{.object = static_cast<int>(i)}, object.mass.centre};
         say(code::immovable_body, element, "object",
-            "object '" + name + "' is " + (object.mobility == description::Mobility::fixed ? "fixed" : "moved by its path") +
+            "object '" + name + "' is " +
+                (object.mobility == description::Mobility::fixed ? "fixed" : "moved by its path") +
                 ": forces and masses change nothing for it. Give it mobility=\"free\" or \"held\"");
       }
       return std::nullopt;

@@ -200,7 +200,8 @@ class StackReader {
 
   /// A <fault> of sensors stands behind all of them.
   void readFaultsOf(const CheckedElement& root) {
-    for (ElementInstance& sensor : readList(root, "faults", ElementKind::sensor)) stack_.sensors.push_back(std::move(sensor));
+    for (ElementInstance& sensor : readList(root, "faults", ElementKind::sensor))
+      stack_.sensors.push_back(std::move(sensor));
     stack_.fault_elements = readList(root, "faults", ElementKind::structure);
     for (const CheckedElement* faults : root.all("faults")) readFaults(*faults, stack_, findings_);
   }

@@ -48,8 +48,8 @@ class LinkWrenches {
 
   bool empty() const { return subtrees_.empty(); }
   /// Motions, accelerations and external wrenches by body (contacts and pushes), all of one instant; `contacts` and
-  /// `pushes` are those of that instant: where a fixed joint parts a body, what acts on the links beyond it is taken from
-  /// there.
+  /// `pushes` are those of that instant: where a fixed joint parts a body, what acts on the links beyond it is taken
+  /// from there.
   void evaluate(const std::vector<BodyMotion>& motions, const std::vector<BodyAcceleration>& accelerations,
                 const std::vector<BodyWrench>& external, const std::vector<control::ContactRecord>& contacts,
                 std::vector<control::LinkWrench>& wrenches, const std::vector<LinkPush>& pushes = {}) const;

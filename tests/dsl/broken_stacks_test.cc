@@ -97,7 +97,8 @@ INSTANTIATE_TEST_SUITE_P(
         Expected{"fault_on_fixed_link.xml", "E056", 8, 30,
                  "link 'lwr_base' is fixed to the world: forces and masses change nothing for it"},
         Expected{"fault_on_fixed_object.xml", "E056", 8, 32,
-                 "object 'table' is fixed: forces and masses change nothing for it. Give it mobility=\"free\" or \"held\""},
+                 "object 'table' is fixed: forces and masses change nothing for it. Give it mobility=\"free\" or "
+                 "\"held\""},
         Expected{"fault_over_before.xml", "E014", 8, 60,
                  "attribute 'until': 2 s is not after 2.5 s, where it begins"},
         Expected{"fault_unknown_joint.xml", "E031", 8, 42,

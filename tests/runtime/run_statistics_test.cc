@@ -115,8 +115,9 @@ TEST(RunStatistics, NamesTheFirstJointThatIsTooFast) {
   };
   const std::vector<std::string> warnings = warningsWith(0.5);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_THAT(warnings[0], ::testing::AllOf(::testing::StartsWith("joint 'hinge' was faster than its velocity limit, first at t = 0.0"),
-                                            ::testing::EndsWith(" ticks")));
+  EXPECT_THAT(warnings[0],
+              ::testing::AllOf(::testing::StartsWith("joint 'hinge' was faster than its velocity limit, first at t = "),
+                               ::testing::EndsWith(" ticks")));
   EXPECT_THAT(warningsWith(50), ::testing::ElementsAre());
   EXPECT_THAT(warningsWith(0), ::testing::ElementsAre()) << "a limit that nobody knew";
 }

@@ -137,7 +137,8 @@ TEST(WrongMass, StaysStableWhereAJointLeansAtItsStop) {
   description::Robot robot = arm();
   for (description::Joint& joint : robot.joints) joint.lower = -0.6, joint.upper = 0.4;
   SimbodyPlant plant(robot, {}, Eigen::Vector2d(0, 0),
-                     with({{"light", {0.5, kForever}, {.link = kElbow}, 0.01}, {"tool", {0.5, kForever}, {.link = kTool}, 0.01}}));
+                     with({{"light", {0.5, kForever}, {.link = kElbow}, 0.01},
+                           {"tool", {0.5, kForever}, {.link = kTool}, 0.01}}));
   fall(plant, 3);
   EXPECT_LT(plant.sense().qd.norm(), 1e-3);
 }
@@ -158,7 +159,8 @@ TEST(Shove, GivesAnObjectItsImpulseWhateverPartOfAStepItLasts) {
   // Of steps of 0.25 ms: whole ones, parts at both ends, a part of one alone.
   for (const description::Window window : {description::Window{0.01, 0.02}, {0.0101, 0.0187}, {0.01003, 0.01009}}) {
     const Vector3d force(3, -2, 4), moment(0.01, 0.02, 0);
-    SimbodyPlant plant(arm(), ball(), Eigen::Vector2d(0, 0), with({}, {{"kick", window, {.object = 0}, force, moment}}));
+    const Shove kick{"kick", window, {.object = 0}, force, moment};
+    SimbodyPlant plant(arm(), ball(), Eigen::Vector2d(0, 0), with({}, {kick}));
     fall(plant, 0.05);
     const double lasted = window.until - window.from;
     const Vector3d weight(0, 0, -9.81 * 0.05);
@@ -172,8 +174,8 @@ TEST(Shove, GivesAnObjectItsImpulseWhateverPartOfAStepItLasts) {
 }
 
 TEST(Shove, AtAPointTurnsTheBody) {
-  SimbodyPlant plant(arm(), ball(), Eigen::Vector2d(0, 0),
-                     with({}, {{"kick", {0, 0.001}, {.object = 0}, Vector3d(1, 0, 0), Vector3d::Zero(), Vector3d(0, 0.02, 0)}}));
+  const Shove kick{"kick", {0, 0.001}, {.object = 0}, Vector3d(1, 0, 0), Vector3d::Zero(), Vector3d(0, 0.02, 0)};
+  SimbodyPlant plant(arm(), ball(), Eigen::Vector2d(0, 0), with({}, {kick}));
   fall(plant, 0.001);
   EXPECT_NEAR(plant.objects()[0].angular_W.z(), -0.02 * 0.001 / 1e-5, 1e-6);
 }
