@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "dsl/element_checker.h"
+#include "dsl/fault_reader.h"
 #include "dsl/model_search.h"
 #include "dsl/nearest_name.h"
 #include "dsl/read_robot.h"
@@ -60,6 +61,7 @@ class StackReader {
     stack_.signals = readList(root, "signals", ElementKind::signal);
     readLevels(root);
     if (const auto* controller = root.first("controller")) readController(*controller);
+    readFaultsOf(root);
     readRun(root);
     checkReferences(root);
     findings_.throwErrors();
@@ -194,6 +196,14 @@ class StackReader {
       for (const CheckedElement& element : elements->children)
         if (element.row->kind == kind) found.push_back(instanceOf(element));
     return found;
+  }
+
+  /// A <fault> of sensors stands behind all of them.
+  void readFaultsOf(const CheckedElement& root) {
+    for (ElementInstance& sensor : readList(root, "faults", ElementKind::sensor))
+      stack_.sensors.push_back(std::move(sensor));
+    stack_.fault_elements = readList(root, "faults", ElementKind::structure);
+    for (const CheckedElement* faults : root.all("faults")) readFaults(*faults, stack_, findings_);
   }
 
   void readLevels(const CheckedElement& root) {
@@ -441,6 +451,8 @@ class StackReader {
       for (const CheckedElement* list : root.all(lists))
         for (const CheckedElement& source : list->children) sources.push_back(&source);
     for (const CheckedElement* source : sources) references.checkAll(*source);
+    for (const CheckedElement* faults : root.all("faults"))
+      for (const CheckedElement& fault : faults->children) references.checkAll(fault);
     for (const CheckedElement* level : root.all("level")) {
       references.check(*level);
       for (const CheckedElement& task : level->children) references.checkAll(task);

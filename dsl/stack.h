@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/control/element_values.h"
+#include "framework/description/faults.h"
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
 
@@ -74,7 +75,9 @@ struct Stack {
   Eigen::VectorXd start_q;                                         ///< dof
   std::vector<ObjectDescription> objects;
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);
-  std::vector<ElementInstance> sensors;
+  std::vector<ElementInstance> sensors;                            ///< those among the faults last
+  description::Faults faults;                                      ///< of drives and bodies
+  std::vector<ElementInstance> fault_elements;                     ///< these, as read
   std::vector<ElementInstance> signals;
   std::vector<LevelDescription> levels;
   ElementInstance controller;                                      ///< base attributes: backend, rate

@@ -1,3 +1,4 @@
+#include "dsl/fault_elements.h"
 #include "dsl/read_stack.h"
 #include "dsl/shape_elements.h"
 #include "framework/control/controller.h"
@@ -41,6 +42,7 @@ ElementRow stackRow() {
                        {"robot", 1, 1},
                        {"scene", 0, 1},
                        {"sensors"},
+                       {"faults"},
                        {"signals"},
                        {"level", 1},
                        {"controller", 1, 1},
@@ -316,6 +318,7 @@ void addStructureElements(control::Registry& registry) {
                          sceneRow(), objectRow(), atRow(), sensorsRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
                          recordRow(), targetRow()})
     registry.addStructure(std::move(row));
+  addFaultElements(registry);
   addShapeElements(registry);
 }
 

@@ -149,6 +149,7 @@ std::string writeResolved(const Stack& stack) {
     out += "  </" + name + ">\n";
   };
   list("sensors", stack.sensors);
+  list("faults", stack.fault_elements);
   list("signals", stack.signals);
   for (const LevelDescription& level : stack.levels) out += levelText(level, sources);
   out += "  <controller" + attributesOf(stack.controller.values.row(), stack.controller.values) +

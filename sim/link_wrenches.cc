@@ -57,9 +57,9 @@ LinkWrenches::LinkWrenches(const Robot& robot, const std::vector<Carrier>& carri
 }
 
 void LinkWrenches::evaluate(const std::vector<BodyMotion>& motions, const std::vector<BodyAcceleration>& accelerations,
-                            const std::vector<BodyWrench>& contact_wrenches,
+                            const std::vector<BodyWrench>& external,
                             const std::vector<control::ContactRecord>& contacts,
-                            std::vector<control::LinkWrench>& wrenches) const {
+                            std::vector<control::LinkWrench>& wrenches, const std::vector<LinkPush>& pushes) const {
   wrenches.clear();
   for (const Subtree& subtree : subtrees_) {
     const BodyMotion& own = motions[static_cast<std::size_t>(subtree.carrier.body)];
@@ -80,13 +80,18 @@ void LinkWrenches::evaluate(const std::vector<BodyMotion>& motions, const std::v
       moment += inertia * change.angular_W + body.angular_W.cross(inertia * body.angular_W);
     }
     for (const int body : subtree.bodies) {
-      const BodyWrench& wrench = contact_wrenches[static_cast<std::size_t>(body)];
+      const BodyWrench& wrench = external[static_cast<std::size_t>(body)];
       add(-wrench.force_W, motions[static_cast<std::size_t>(body)].p_WB);
       moment -= wrench.torque_W;
     }
     for (const control::ContactRecord& contact : contacts)
       if (subtree.parted[static_cast<std::size_t>(contact.link)])
         add(contact.force_N * contact.normal_W + contact.friction_W, contact.point_W);
+    for (const LinkPush& push : pushes) {
+      if (!subtree.parted[static_cast<std::size_t>(push.link)]) continue;
+      add(-push.force_W, push.point_W);
+      moment -= push.moment_W;
+    }
     const Eigen::Matrix3d R_LW = (own.R_WB * subtree.carrier.pose.linear()).transpose();
     wrenches.push_back({subtree.link, R_LW * force, R_LW * moment});
   }

@@ -15,12 +15,22 @@ struct BodyAcceleration {
   Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();              ///< a, m/s², of the frame's origin
 };
 
+/// What pushes a link besides objects.
+struct LinkPush {
+  int link = -1;                                                   ///< index into description::Robot::links
+  Eigen::Vector3d point_W = Eigen::Vector3d::Zero();               ///< m
+  Eigen::Vector3d force_W = Eigen::Vector3d::Zero();               ///< N, on the link, at that point
+  Eigen::Vector3d moment_W = Eigen::Vector3d::Zero();              ///< N m, besides the force's
+};
+
 /// The wrench through the joint above a link, fixed joints too: what the rest of the robot does to the link and all
 /// that hangs on it.  With S the links and rotors of that subtree, c_k their centres of mass, o the link's origin and
 /// f_c what the subtree does to objects at the points p_c (Newton and Euler, body by body):
 ///
 ///   f = Σ_S m_k (c̈_k − g) + Σ f_c,
 ///   n = Σ_S [I_k α_k + ω_k × I_k ω_k + (c_k − o) × m_k (c̈_k − g)] + Σ (p_c − o) × f_c.
+///
+/// Whatever else pushes a link, a shove, is the negative of such an f_c.
 ///
 /// The rotor is part of the joint's child, as in the plant: about the joint's axis n is the joint's whole torque.
 /// Nothing of Simbody's own reaction forces is used, which know no fixed joints.
@@ -37,11 +47,12 @@ class LinkWrenches {
                const Eigen::Vector3d& gravity_W);
 
   bool empty() const { return subtrees_.empty(); }
-  /// Motions, accelerations and contact wrenches by body, all of one instant; `contacts` are the records of that
-  /// instant: where a fixed joint parts a body, the contacts of the links beyond it are taken from there.
+  /// Motions, accelerations and external wrenches by body (contacts and pushes), all of one instant; `contacts` and
+  /// `pushes` are those of that instant: where a fixed joint parts a body, what acts on the links beyond it is taken
+  /// from there.
   void evaluate(const std::vector<BodyMotion>& motions, const std::vector<BodyAcceleration>& accelerations,
-                const std::vector<BodyWrench>& contact_wrenches, const std::vector<control::ContactRecord>& contacts,
-                std::vector<control::LinkWrench>& wrenches) const;
+                const std::vector<BodyWrench>& external, const std::vector<control::ContactRecord>& contacts,
+                std::vector<control::LinkWrench>& wrenches, const std::vector<LinkPush>& pushes = {}) const;
 
  private:
   struct Part {                                                    // a link, or a rotor without mass

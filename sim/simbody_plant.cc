@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "sim/link_wrenches.h"
 #include "sim/object_path.h"
 #include "sim/simbody_robot.h"
+#include "sim/wrong_mass.h"
 
 namespace tactus::sim {
 namespace {
@@ -76,22 +78,29 @@ class SimbodyPlant::Implementation {
       : options_(options),
         names_(jointNames(robot)),
         scene_(scene),
-        robot_(checkedJoints(robot), scene.gravity, freeBodies(scene)),
-        state_(robot_.defaultState()),
+        weighed_(weigh(checkedJoints(robot))),
+        now_(weighed_.front().bodies.get()),
+        robot_(now_->robot),
         objects_(placeObjects()),
         motions_(static_cast<size_t>(robot_.matter().getNumBodies() + movedObjects())),
         contact_(makeContact(robot)),
         q_(checkedStart(robot, start_q)),
         qd_(Eigen::VectorXd::Zero(robot_.dof())),
+        speed_limits_(speedLimits(robot)),
         resistance_(robot, effectiveInertia(), options.step),
         joint_torque_(robot_.dof()),
-        mobility_forces_(state_.getNU(), 0.0),
-        accelerations_(state_.getNU(), 0.0),
+        mobility_forces_(now_->state.getNU(), 0.0),
+        accelerations_(now_->state.getNU(), 0.0),
         last_free_(free_),
-        wrenches_(robot, carriers(robot), options.wrench_links, scene.gravity),
+        external_(motions_.size()),
         changes_(motions_.size()) {
     sensed_.contacts.reserve(contact_.capacity());
     sensed_.wrenches.reserve(options.wrench_links.size());
+    for (const description::WrongMass& fault : options_.wrong_masses) records_.push_back({fault.name, "wrong-mass"});
+    for (const description::Shove& fault : options_.shoves) records_.push_back({fault.name, "shove"});
+    pushes_.reserve(options_.shoves.size());
+    noteFaults();
+    chooseMasses();
     realize();
     contact_.evaluate(motions_, options_.step);
     fillSensed();
@@ -99,6 +108,9 @@ class SimbodyPlant::Implementation {
 
   const control::Sensed& sense() const { return sensed_; }
   std::span<const control::ObjectMotion> objects() const { return motions_of_objects_; }
+  void faults(std::vector<const control::FaultRecord*>& records) const {
+    for (const control::FaultRecord& record : records_) records.push_back(&record);
+  }
 
   void advance(const Eigen::VectorXd& torque, double duration) {
     const double wanted = duration / options_.step;
@@ -114,25 +126,45 @@ class SimbodyPlant::Implementation {
       fillSensed();
       throw;
     }
+    noteFaults();
     fillSensed();
   }
 
   /// Simbody's own state follows from what is archived here.
   void archive(control::Archive& archive) {
-    archive("steps", steps_);
-    archive("q", q_);
-    archive("qd", qd_);
-    archive("free-bodies", free_);
-    archive("contact", contact_);
-    archive("resistance", resistance_);
-    archive.growing("wrenches", sensed_.wrenches);
+    archive.within("world", [&] {
+      archive("steps", steps_);
+      archive("q", q_);
+      archive("qd", qd_);
+      archive("free-bodies", free_);
+      archive("contact", contact_);
+      archive("resistance", resistance_);
+      archive.growing("wrenches", sensed_.wrenches);
+    });
+    for (control::FaultRecord& record : records_) archive("fault/" + record.name, record);
     if (!archive.restores()) return;
+    noteFaults();
+    chooseMasses();
     realize();
     contact_.evaluate(motions_, options_.step);
     fillSensed();
   }
 
  private:
+  /// All bodies as they weigh for some time; their places, and where links hang on them, are always the same.
+  struct Bodies {
+    Bodies(const description::Robot& described, const description::Scene& scene, const std::vector<int>& wrench_links)
+        : robot(described, scene.gravity, freeBodies(scene)),
+          state(robot.defaultState()),
+          wrenches(described, carriers(described, robot), wrench_links, scene.gravity) {}
+    SimbodyRobot robot;
+    SimTK::State state;
+    LinkWrenches wrenches;
+  };
+  struct Weighed {
+    double from;                                                   // s
+    std::shared_ptr<Bodies> bodies;                                // one for all periods with the same faults
+  };
   struct JointName {
     std::string name;
     const char* unit;
@@ -251,11 +283,29 @@ class SimbodyPlant::Implementation {
       }
   }
 
-  std::vector<LinkWrenches::Carrier> carriers(const description::Robot& robot) const {
+  static std::vector<LinkWrenches::Carrier> carriers(const description::Robot& described, const SimbodyRobot& robot) {
     std::vector<LinkWrenches::Carrier> carriers;
-    for (int link = 0; link < static_cast<int>(robot.links.size()); ++link)
-      carriers.push_back({robot_.carrier(link).getMobilizedBodyIndex(), robot_.poseInCarrier(link)});
+    for (int link = 0; link < static_cast<int>(described.links.size()); ++link)
+      carriers.push_back({robot.carrier(link).getMobilizedBodyIndex(), robot.poseInCarrier(link)});
     return carriers;
+  }
+
+  /// The first period has no fault yet.
+  std::vector<Weighed> weigh(const description::Robot& robot) const {
+    std::map<std::vector<bool>, std::shared_ptr<Bodies>> made;
+    std::vector<Weighed> weighed;
+    for (const MassPeriod& period : massPeriods(options_.wrong_masses)) {
+      std::shared_ptr<Bodies>& bodies = made[period.holds];
+      if (!bodies) {
+        description::Robot heavier = robot;
+        description::Scene scene = scene_;
+        for (size_t i = 0; i < period.holds.size(); ++i)
+          if (period.holds[i]) makeWrong(options_.wrong_masses[i], heavier, scene);
+        bodies = std::make_shared<Bodies>(heavier, scene, options_.wrench_links);
+      }
+      weighed.push_back({period.from, bodies});
+    }
+    return weighed;
   }
 
   Eigen::VectorXd checkedStart(const description::Robot& robot, const Eigen::VectorXd& start_q) const {
@@ -276,6 +326,16 @@ class SimbodyPlant::Implementation {
     return start_q;
   }
 
+  /// A limit of 0 or below is none: files have it where nobody knew.
+  Eigen::VectorXd speedLimits(const description::Robot& robot) const {
+    Eigen::VectorXd limits = Eigen::VectorXd::Constant(robot_.dof(), options_.velocity_limit);
+    const std::vector<int> moving = robot.movingJoints();
+    for (int i = 0; i < robot_.dof(); ++i)
+      if (const double own = robot.joints[moving[i]].velocity; own > 0)
+        limits[i] = std::min(limits[i], options_.overspeed * own);
+    return limits;
+  }
+
   void checkTorque(const Eigen::VectorXd& torque) const {
     if (torque.size() != robot_.dof())
       throw runtime::PlantError("got " + std::to_string(torque.size()) + " torques for " +
@@ -287,14 +347,71 @@ class SimbodyPlant::Implementation {
                                   " s: the controller has lost its numbers, the plant stays where it was");
   }
 
-  /// 1/(M⁻¹)_ii at the start.
+  /// 1/(M⁻¹)_ii at the start; the least of it where masses change.
   Eigen::VectorXd effectiveInertia() {
-    realizePosition();
-    SimTK::Matrix inverse;
-    robot_.matter().calcMInv(state_, inverse);
-    Eigen::VectorXd inertia(robot_.dof());
-    for (int i = 0; i < robot_.dof(); ++i) inertia[i] = 1 / inverse(i, i);
+    Eigen::VectorXd inertia = Eigen::VectorXd::Constant(robot_.dof(), description::infinity);
+    for (const Weighed& weighed : weighed_) {
+      now_ = weighed.bodies.get();
+      realizePosition();
+      SimTK::Matrix inverse;
+      now_->robot.matter().calcMInv(now_->state, inverse);
+      for (int i = 0; i < robot_.dof(); ++i) inertia[i] = std::min(inertia[i], 1 / inverse(i, i));
+    }
     return inertia;
+  }
+
+  double faultRounding() const { return 1e-6 * options_.step; }
+
+  /// Of the step that begins now.
+  void noteFaults() {
+    size_t record = 0;
+    for (const description::WrongMass& fault : options_.wrong_masses)
+      records_[record++].note(time(), fault.window.holds(time(), faultRounding()));
+    for (const description::Shove& fault : options_.shoves)
+      records_[record++].note(time(), shareOfStep(fault.window) > 0);
+  }
+
+  /// The part of the step that begins now which a window covers.
+  double shareOfStep(const description::Window& window) const {
+    const double covered = std::min(time() + options_.step, window.until) - std::max(time(), window.from);
+    if (covered <= faultRounding()) return 0;
+    return covered >= options_.step - faultRounding() ? 1 : covered / options_.step;
+  }
+
+  /// Bodies as they weigh now; true where that is new.
+  bool chooseMasses() {
+    Bodies* before = now_;
+    for (const Weighed& weighed : weighed_)
+      if (weighed.from <= time() + faultRounding()) now_ = weighed.bodies.get();
+    return now_ != before;
+  }
+
+  /// What contacts, shoves and holders do to the bodies.
+  void gatherWrenches() {
+    pushes_.clear();
+    external_ = contact_.wrenches();
+    for (const description::Shove& shove : options_.shoves) {
+      const double share = shareOfStep(shove.window);
+      if (share <= 0) continue;
+      const int body = shove.body.object >= 0
+                           ? objects_[static_cast<size_t>(shove.body.object)].body
+                           : static_cast<int>(robot_.carrier(shove.body.link).getMobilizedBodyIndex());
+      const Eigen::Vector3d point_B =
+          shove.body.object >= 0 ? shove.point : robot_.poseInCarrier(shove.body.link) * shove.point;
+      const BodyMotion& motion = motions_[static_cast<size_t>(body)];
+      const Eigen::Vector3d arm_W = motion.R_WB * point_B;
+      BodyWrench& wrench = external_[static_cast<size_t>(body)];
+      wrench.force_W += share * shove.force_W;
+      wrench.torque_W += share * (shove.moment_W + arm_W.cross(shove.force_W));
+      if (shove.body.link >= 0)
+        pushes_.push_back({shove.body.link, motion.p_WB + arm_W, share * shove.force_W, share * shove.moment_W});
+    }
+    for (size_t i = 0; i < objects_.size(); ++i) {
+      if (scene_.objects[i].mobility != description::Mobility::held) continue;
+      const BodyWrench wrench = holdingWrench(i);
+      external_[static_cast<size_t>(objects_[i].body)].force_W += wrench.force_W;
+      external_[static_cast<size_t>(objects_[i].body)].torque_W += wrench.torque_W;
+    }
   }
 
   double time() const { return static_cast<double>(steps_) * options_.step; }
@@ -305,8 +422,8 @@ class SimbodyPlant::Implementation {
 
   /// Writes what the plant integrates into Simbody's state.
   void setState() {
-    auto q = toEigen(state_.updQ());
-    auto u = toEigen(state_.updU());
+    auto q = toEigen(now_->state.updQ());
+    auto u = toEigen(now_->state.updU());
     const Eigen::Index dof = robot_.dof();
     q.head(dof) = q_;
     u.head(dof) = qd_;
@@ -322,17 +439,18 @@ class SimbodyPlant::Implementation {
 
   void realizePosition() {
     setState();
-    robot_.system().realize(state_, SimTK::Stage::Position);
+    now_->robot.system().realize(now_->state, SimTK::Stage::Position);
   }
 
   /// Brings Simbody and the body motions to (q_, qd_).
   void realize() {
     setState();
-    robot_.system().realize(state_, SimTK::Stage::Dynamics);
+    const SimTK::State& state = now_->state;
+    now_->robot.system().realize(state, SimTK::Stage::Dynamics);
     for (SimTK::MobilizedBodyIndex b(1); b < robot_.matter().getNumBodies(); ++b) {
-      const SimTK::MobilizedBody& body = robot_.matter().getMobilizedBody(b);
-      const SimTK::Transform& X_WB = body.getBodyTransform(state_);
-      const SimTK::SpatialVec& V_WB = body.getBodyVelocity(state_);
+      const SimTK::MobilizedBody& body = now_->robot.matter().getMobilizedBody(b);
+      const SimTK::Transform& X_WB = body.getBodyTransform(state);
+      const SimTK::SpatialVec& V_WB = body.getBodyVelocity(state);
       motions_[b] = {toEigen(X_WB.R()), toEigen(X_WB.p()), toEigen(V_WB[0]), toEigen(V_WB[1])};
     }
     for (size_t i = 0; i < objects_.size(); ++i)
@@ -354,28 +472,23 @@ class SimbodyPlant::Implementation {
   }
 
   void step(const Eigen::VectorXd& torque, bool last) {
+    noteFaults();
+    if (chooseMasses()) realize();
     joint_torque_ = torque;
     resistance_.add(q_, qd_, joint_torque_);
     toEigen(mobility_forces_).head(robot_.dof()) = joint_torque_;
-    robot_.gravityForces(state_, body_forces_);
-    for (SimTK::MobilizedBodyIndex b(1); b < body_forces_.size(); ++b) {
-      const BodyWrench& wrench = contact_.wrenches()[b];
-      body_forces_[b] += SimTK::SpatialVec(toSimTK(wrench.torque_W), toSimTK(wrench.force_W));
-    }
-    for (size_t i = 0; i < objects_.size(); ++i) {
-      if (scene_.objects[i].mobility != description::Mobility::held) continue;
-      const BodyWrench wrench = holdingWrench(i);
-      body_forces_[SimTK::MobilizedBodyIndex(objects_[i].body)] +=
-          SimTK::SpatialVec(toSimTK(wrench.torque_W), toSimTK(wrench.force_W));
-    }
+    now_->robot.gravityForces(now_->state, body_forces_);
+    gatherWrenches();
+    for (SimTK::MobilizedBodyIndex b(1); b < body_forces_.size(); ++b)
+      body_forces_[b] += SimTK::SpatialVec(toSimTK(external_[b].torque_W), toSimTK(external_[b].force_W));
 
     last_q_ = q_;
     last_qd_ = qd_;
     last_free_ = free_;
     last_steps_ = steps_;
     try {
-      robot_.matter().calcAccelerationIgnoringConstraints(state_, mobility_forces_, body_forces_, accelerations_,
-                                                          body_accelerations_);
+      now_->robot.matter().calcAccelerationIgnoringConstraints(now_->state, mobility_forces_, body_forces_,
+                                                               accelerations_, body_accelerations_);
       if (last) senseWrenches();
       qd_ += options_.step * toEigen(accelerations_).head(robot_.dof());
       q_ += options_.step * qd_;
@@ -413,11 +526,11 @@ class SimbodyPlant::Implementation {
 
   /// Of the instant at which a step begins: accelerations, motions and contacts belong together there.
   void senseWrenches() {
-    if (wrenches_.empty()) return;
+    if (now_->wrenches.empty()) return;
     for (SimTK::MobilizedBodyIndex b(1); b < body_accelerations_.size(); ++b)
       changes_[b] = {toEigen(body_accelerations_[b][0]), toEigen(body_accelerations_[b][1])};
     contact_.read(sensed_.contacts);
-    wrenches_.evaluate(motions_, changes_, contact_.wrenches(), sensed_.contacts, sensed_.wrenches);
+    now_->wrenches.evaluate(motions_, changes_, external_, sensed_.contacts, sensed_.wrenches, pushes_);
   }
 
   void takeBack() {
@@ -442,10 +555,10 @@ class SimbodyPlant::Implementation {
                                 " rad/s at t = " + print(roundedTime(steps_ + 1)) + " s. " + usual_causes);
     }
     int fastest = 0;
-    if (robot_.dof() == 0 || qd_.cwiseAbs().maxCoeff(&fastest) <= options_.velocity_limit) return;
+    if (robot_.dof() == 0 || (qd_.array().abs() / speed_limits_.array()).maxCoeff(&fastest) <= 1) return;
     throw runtime::PlantError("joint '" + names_[fastest].name + "' runs away: its speed reaches " +
                               print(qd_[fastest]) + " " + names_[fastest].unit + "/s at t = " +
-                              print(roundedTime(steps_ + 1)) + " s (limit " + print(options_.velocity_limit) + "). " +
+                              print(roundedTime(steps_ + 1)) + " s (limit " + print(speed_limits_[fastest]) + "). " +
                               usual_causes);
   }
 
@@ -469,21 +582,25 @@ class SimbodyPlant::Implementation {
   PlantOptions options_;
   std::vector<JointName> names_;
   description::Scene scene_;
-  SimbodyRobot robot_;
-  SimTK::State state_;
+  std::vector<Weighed> weighed_;                                   // by time; one without faults of mass
+  Bodies* now_;                                                    // of these, with the state that was set last
+  const SimbodyRobot& robot_;                                      // of the first: what all have in common
   std::vector<FreeState> free_;                                    // by index among those that forces move
   std::vector<control::ObjectMotion> motions_of_objects_;
   std::vector<ObjectBody> objects_;
   std::vector<BodyMotion> motions_;       // by mobilized body; 0 is Ground, which rests; then objects that follow a path
   ContactForce contact_;
   Eigen::VectorXd q_, qd_;
+  Eigen::VectorXd speed_limits_;                                   // rad/s or m/s, beyond which a joint runs away
   JointResistance resistance_;
   Eigen::VectorXd joint_torque_, last_q_, last_qd_;
   SimTK::Vector mobility_forces_, accelerations_;
   SimTK::Vector_<SimTK::SpatialVec> body_forces_, body_accelerations_;
   std::vector<FreeState> last_free_;
   std::int64_t steps_ = 0, last_steps_ = 0;
-  LinkWrenches wrenches_;
+  std::vector<control::FaultRecord> records_;                      // wrong masses, then shoves
+  std::vector<BodyWrench> external_;                               // by body: contacts, shoves, holders
+  std::vector<LinkPush> pushes_;                                   // shoves of links
   std::vector<BodyAcceleration> changes_;                          // by mobilized body; Ground rests
   control::Sensed sensed_;
 };
@@ -504,6 +621,9 @@ const control::Sensed& SimbodyPlant::sense() const { return implementation_->sen
 std::span<const control::ObjectMotion> SimbodyPlant::objects() const { return implementation_->objects(); }
 
 void SimbodyPlant::archive(control::Archive& archive) { implementation_->archive(archive); }
+void SimbodyPlant::faults(std::vector<const control::FaultRecord*>& records) const {
+  implementation_->faults(records);
+}
 
 void SimbodyPlant::advance(const Eigen::VectorXd& torque, double duration) {
   implementation_->advance(torque, duration);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/description/faults.h"
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
 #include "framework/runtime/plant.h"
@@ -15,10 +16,17 @@ namespace tactus::sim {
 struct PlantOptions {
   double step = 0.25e-3;                                           ///< s, semi-explicit Euler
   double velocity_limit = 100;                ///< rad/s or m/s, of joints and places; beyond it the state is a runaway
+  double overspeed = 5;                       ///< times a joint's own velocity limit, where it has one; a runaway, too
   ContactOptions contact;
   /// Links, each once, whose wrenches `sense` tells (see link_wrenches.h): as they were when the last step began, none
   /// before the first.
   std::vector<int> wrench_links;
+  /// Of links and of objects that forces move; whoever controls the robot does not know.  Velocities stay as they are
+  /// when a mass changes.
+  std::vector<description::WrongMass> wrong_masses;
+  /// On links and on objects that forces move, each held over a step; a step that it covers in part feels that part of
+  /// it, so that the impulse is right.
+  std::vector<description::Shove> shoves;
 };
 
 /// The robot in its scene, simulated by Simbody (tree, free bodies, gravity, forward dynamics) with Tactus's own contact
@@ -41,6 +49,8 @@ class SimbodyPlant final : public runtime::Plant {
   void advance(const Eigen::VectorXd& torque, double duration) override;
   std::span<const control::ObjectMotion> objects() const override;
   void archive(control::Archive& archive) override;
+  /// Wrong masses, then shoves.
+  void faults(std::vector<const control::FaultRecord*>& records) const override;
 
  private:
   class Implementation;

@@ -180,6 +180,20 @@ std::string metricsTable(const JsonPlace& run) {
   return html + "</table>\n";
 }
 
+/// What was asked to go wrong, and when it did; nothing where nothing was.
+std::string faultsTable(const JsonPlace& run) {
+  std::string rows;
+  const auto cell = [](const JsonPlace& time, const std::string& none) {
+    return "<td class='number'>" + (time.number() ? number(time, 8) : none) + "</td>";
+  };
+  for (const JsonPlace& fault : run.at("faults").items())
+    rows += "<tr><td>" + escaped(fault.at("name").text()) + "</td><td>" + escaped(fault.at("kind").text()) + "</td>" +
+            cell(fault.at("began_s"), "never") + cell(fault.at("ended_s"), "–") + "</tr>\n";
+  if (rows.empty()) return "";
+  return "<section><table><tr><th>fault</th><th>kind</th><th>began (s)</th><th>ended (s)</th></tr>\n" + rows +
+         "</table></section>\n";
+}
+
 std::string facts(const JsonPlace& run) {
   const JsonPlace tick = run.at("tick_us"), ticks = run.at("ticks");
   std::vector<std::pair<std::string, std::string>> rows{
@@ -237,7 +251,7 @@ std::string xrays(const RunData& data) {
 }
 
 std::string page(const RunData& data, const std::string& contacts, const std::string& touched) {
-  std::string html = warnings(data);
+  std::string html = warnings(data) + faultsTable(data.run());
   html += "<section class='columns'><div>" + metricsTable(data.run()) + "</div><div>" + facts(data.run()) +
           "</div></section>\n";
   html += "<section>" + contacts + "</section>\n";

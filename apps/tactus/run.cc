@@ -178,6 +178,7 @@ int run(const RunArguments& arguments, bool json) {
   } else {
     std::cout << summaryTable(description);
   }
+  for (const std::string& note : faultNotes(description)) std::cerr << "tactus run: note: " << note << "\n";
   if (!result.message.empty()) std::cerr << "tactus run: " << result.message << "; the log is kept\n";
   for (const nlohmann::ordered_json& warning : description["warnings"])
     std::cerr << "tactus run: warning: " << warning.get<std::string>() << "\n";

@@ -10,6 +10,7 @@
 #include "apps/tactus/text.h"
 #include "apps/tactus/versions.h"
 #include "apps/tactus/xray_view.h"
+#include "framework/control/element_values.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/percentile.h"
 
@@ -52,6 +53,22 @@ ordered_json describeFeatures(const Session& session) {
     features.push_back(std::move(json));
   }
   return features;
+}
+
+/// A fault that begins where the run ends in its time never struck.
+ordered_json describeFaults(const Session& session, const runtime::LoopResult& result) {
+  ordered_json faults = ordered_json::array();
+  const bool in_time = result.ending == runtime::Ending::done || result.ending == runtime::Ending::interrupted;
+  const double end = in_time ? result.simulated - 1e-6 * session.controller().period() : INFINITY;
+  const auto timeOf = [&](double time) {
+    return time < end ? ordered_json(std::round(time * 1e9) / 1e9) : ordered_json();
+  };
+  for (const control::FaultRecord* fault : session.faults())
+    faults.push_back({{"name", fault->name},
+                      {"kind", fault->kind},
+                      {"began_s", timeOf(fault->began)},
+                      {"ended_s", timeOf(fault->ended)}});
+  return faults;
 }
 
 ordered_json describeTargets(const dsl::Stack& stack) {
@@ -163,6 +180,7 @@ ordered_json describeRun(const Session& session, const runtime::LoopResult& resu
                        {"primal", statistics.kkt_max.primal},
                        {"complementarity", statistics.kkt_max.complementarity}};
   }
+  json["faults"] = describeFaults(session, result);
   json["metrics"] = ordered_json::object();
   for (const control::Metric& metric : metrics) json["metrics"][metric.name] = metric.value;
   json["wanted"] = describeTargets(session.stack());
@@ -170,6 +188,19 @@ ordered_json describeRun(const Session& session, const runtime::LoopResult& resu
   json["features"] = describeFeatures(session);
   json["versions"] = versions();
   return json;
+}
+
+std::vector<std::string> faultNotes(const ordered_json& run) {
+  const auto at = [](const ordered_json& time) { return "t = " + control::formatNumber(time.get<double>()) + " s"; };
+  std::vector<std::string> notes;
+  for (const ordered_json& fault : run["faults"]) {
+    const ordered_json &began = fault["began_s"], &ended = fault["ended_s"];
+    notes.push_back("fault '" + fault["name"].get<std::string>() + "' (" + fault["kind"].get<std::string>() + ") " +
+                    (began.is_null()   ? "never struck: the run ended before"
+                     : ended.is_null() ? "struck from " + at(began) + " to the end"
+                                       : "struck from " + at(began) + " until " + at(ended)));
+  }
+  return notes;
 }
 
 std::string summaryTable(const ordered_json& run) {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "apps/tactus/session.h"
 
@@ -22,6 +23,9 @@ nlohmann::ordered_json describeRun(const Session& session, const runtime::LoopRe
 
 /// Back end, seed, file: what is known before the run.
 nlohmann::ordered_json describeStart(const Session& session, const std::string& status);
+
+/// A line for every fault of what describeRun holds: when it struck.
+std::vector<std::string> faultNotes(const nlohmann::ordered_json& run);
 
 /// What describeRun holds, as a table for people.
 std::string summaryTable(const nlohmann::ordered_json& run);

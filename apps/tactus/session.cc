@@ -7,6 +7,7 @@
 #include "dsl/codes.h"
 #include "dsl/compile.h"
 #include "framework/control/element_values.h"
+#include "framework/runtime/faulty_drives.h"
 #include "framework/runtime/feature_truth.h"
 #include "sim/simbody_plant.h"
 
@@ -19,8 +20,12 @@ std::unique_ptr<runtime::SensingPlant> makePlant(const dsl::Stack& stack, const 
     auto sensors = dsl::makeSensors(stack, registry, scene, stack.run.seed);
     sim::PlantOptions options;
     options.wrench_links = runtime::wrenchLinks(sensors);
-    return std::make_unique<runtime::SensingPlant>(
-        std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q, options), std::move(sensors));
+    options.wrong_masses = stack.faults.masses;
+    options.shoves = stack.faults.shoves;
+    auto body = std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q, options);
+    auto driven = std::make_unique<runtime::FaultyDrives>(std::move(body), stack.faults.torques,
+                                                          1 / stack.controller.values.real("rate"));
+    return std::make_unique<runtime::SensingPlant>(std::move(driven), std::move(sensors));
   } catch (const runtime::PlantError& error) {
     dsl::Diagnostic diagnostic;
     diagnostic.code = dsl::code::unfit_for_dynamics.id;
@@ -68,6 +73,7 @@ Session::Session(dsl::Stack stack, const control::Registry& registry)
     touched_points_ = findPort<control::TouchedPoints>(i, "points");
   }
   findFeatures();
+  plant_->faults(faults_);
 }
 
 std::map<std::string, std::string> Session::taskPlaces() const {
@@ -160,7 +166,14 @@ void Session::archiveParts(control::Archive& archive) {
 runtime::LoopResult Session::run(const std::vector<control::Observer*>& others, const std::atomic<bool>& stop) {
   std::vector<control::Observer*> observers{contacts_.get(), &statistics_};
   observers.insert(observers.end(), others.begin(), others.end());
-  return runtime::runLoop(*plant_, *controller_, stack_.run.duration - time(), observers, stop);
+  runtime::LoopResult result = runtime::runLoop(*plant_, *controller_, stack_.run.duration - time(), observers, stop);
+  if (result.ending == runtime::Ending::plant_error || result.ending == runtime::Ending::tick_error) {
+    std::string striking;
+    for (const control::FaultRecord* fault : faults_)
+      if (fault->strikes) striking += (striking.empty() ? "" : ", ") + ("'" + fault->name + "' (" + fault->kind + ")");
+    if (!striking.empty()) result.message += " Faults that struck then: " + striking;
+  }
+  return result;
 }
 
 std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder) const {
@@ -171,6 +184,7 @@ std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder
   options.contacts = contacts_.get();
   options.touched_points = touched_points_;
   options.first_tick = tick();
+  options.faults = faults_;
   for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
     if (scene_.objects[i].mobility != description::Mobility::fixed) options.objects.push_back({scene_.objects[i].name, i});
   return std::make_unique<runtime::Recorder>(options);

@@ -73,6 +73,8 @@ class Session {
   const runtime::RunStatistics& statistics() const { return statistics_; }
   const runtime::ContactMetrics& contacts() const { return *contacts_; }
   const std::vector<SoughtFeature>& features() const { return features_; }
+  /// Everything that the stack asks to go wrong, and when it did.
+  const std::vector<const control::FaultRecord*>& faults() const { return faults_; }
   std::string backEndName() const;
   /// The force that the first contact-force task wants, N.
   std::optional<double> wantedForce() const;
@@ -94,6 +96,7 @@ class Session {
   std::unique_ptr<runtime::ContactMetrics> contacts_;
   const control::TouchedPoints* touched_points_ = nullptr;
   std::vector<SoughtFeature> features_;
+  std::vector<const control::FaultRecord*> faults_;                // of the plant
   runtime::RunStatistics statistics_;
 };
 

@@ -82,7 +82,7 @@ void checkRow(const ElementRow& row) {
 bool ChildRow::allows(const ElementRow& row) const {
   switch (row.kind) {
     case ElementKind::shape: return element == "@shape";
-    case ElementKind::sensor: return element == "@sensor";
+    case ElementKind::sensor: return element == "@sensor" || element == row.name;
     case ElementKind::signal: return element == "@signal";
     case ElementKind::task: return element == "@task";
     case ElementKind::controller: return element == "@controller";

@@ -19,6 +19,12 @@ void archive(Archive& archive, LinkWrench& wrench) {
   archive("moment", wrench.moment_L);
 }
 
+void archive(Archive& archive, FaultRecord& record) {
+  archive("strikes", record.strikes);
+  archive("began", record.began);
+  archive("ended", record.ended);
+}
+
 void archive(Archive& archive, Sensed& sensed) {
   archive("time", sensed.time);
   archive("q", sensed.q);

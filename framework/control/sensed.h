@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <string>
 #include <vector>
 
 #include "framework/control/archive.h"
@@ -34,6 +36,23 @@ struct LinkWrench {
   Eigen::Vector3d moment_L = Eigen::Vector3d::Zero();              ///< N m, link axes, about the link's origin
 };
 
+/// Something that was asked to go wrong, and when it did.
+struct FaultRecord {
+  std::string name;
+  std::string kind;                                                ///< "shove", "torque-loss", "stuck", …
+  bool strikes = false;                                            ///< now
+  double began = std::numeric_limits<double>::quiet_NaN();         ///< s, the first time; NaN: it never did
+  double ended = std::numeric_limits<double>::quiet_NaN();         ///< s, the last time; NaN: it did not
+
+  /// What is so from `time` on.
+  void note(double time, bool strikes_now) {
+    if (strikes_now == strikes) return;
+    if (strikes_now && !(began <= time)) began = time;
+    ended = strikes_now ? std::numeric_limits<double>::quiet_NaN() : time;
+    strikes = strikes_now;
+  }
+};
+
 struct Sensed {
   double time = 0;                                                 ///< s
   Eigen::VectorXd q;                                               ///< rad or m, dof
@@ -45,6 +64,7 @@ struct Sensed {
 
 void archive(Archive& archive, ContactRecord& record);
 void archive(Archive& archive, LinkWrench& wrench);
+void archive(Archive& archive, FaultRecord& record);
 void archive(Archive& archive, Sensed& sensed);
 
 }  // namespace tactus::control

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "framework/control/archive.h"
@@ -31,6 +32,12 @@ class Sensor {
   virtual std::vector<int> wrenchLinks() const { return {}; }
   /// What it carries from one tick to the next, its random draws among it.
   void archive(Archive& archive) { doArchive(archive); }
+  /// Of a sensor that makes others go wrong: its kind, and whether it strikes in this tick; null where it is none.
+  struct Fault {
+    std::string kind;
+    bool strikes = false;
+  };
+  virtual const Fault* fault() const { return nullptr; }
 
  private:
   virtual void doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) = 0;

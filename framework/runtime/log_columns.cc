@@ -8,12 +8,15 @@ using control::LevelReport;
 using control::TickSolution;
 
 LogColumns::LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts,
-                       const std::vector<MovingObject>& objects) {
+                       const std::vector<MovingObject>& objects,
+                       const std::vector<const control::FaultRecord*>& faults) {
   add("time", [](const control::ObservedTick& tick) { return tick.sensed.time; });
   addLevels(controller);
   addTasksAndSignals(controller);
   addSensors(controller.readings(), set);
   addObjects(objects);
+  for (const control::FaultRecord* fault : faults)
+    add("fault/" + fault->name, [fault](const control::ObservedTick&) { return fault->strikes; });
   if (contacts) addContacts(*contacts);
   addController(controller);
   if (set == ColumnSet::all) addJoints(controller);

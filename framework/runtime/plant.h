@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "framework/control/archive.h"
 #include "framework/control/sensed.h"
@@ -27,6 +28,8 @@ class Plant {
   virtual const control::Sensed& truth() const { return sense(); }
   /// Now, of every object of the scene, in its order; none where the plant knows of none.
   virtual std::span<const control::ObjectMotion> objects() const { return {}; }
+  /// Appends a record of everything that was asked to go wrong; they stay where they are for the plant's life.
+  virtual void faults(std::vector<const control::FaultRecord*>&) const {}
   /// Holds the joint torques for `duration` seconds.  Throws PlantError, with the state of the last good step kept.
   virtual void advance(const Eigen::VectorXd& torque, double duration) = 0;
   /// All that the next steps depend on; `sense` then tells what it told when the state was saved.  Throws StateError,

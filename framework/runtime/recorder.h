@@ -15,6 +15,7 @@ struct RecorderOptions {
   double row_rate = 100;                                           ///< Hz, rows of log.csv; at most the control rate
   const ContactMetrics* contacts = nullptr;                        ///< observes before the recorder; null: no columns
   std::vector<MovingObject> objects = {};                          ///< whose motion goes into log.csv
+  std::vector<const control::FaultRecord*> faults = {};            ///< that get columns of log.csv; they outlive it
   const control::TouchedPoints* touched_points = nullptr;          ///< null: touched_points.csv keeps its header alone
   long first_tick = 0;                                             ///< of the run, counted from its start
 };

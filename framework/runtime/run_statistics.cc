@@ -27,6 +27,7 @@ void RunStatistics::observe(const control::ObservedTick& tick) {
   keepTime(tick.tick_us);
   if (record.unusable_task) note(unusable_, *record.unusable_task, tick.sensed.time);
   noteSensing(tick);
+  noteSpeeds(tick);
   fallbacks += record.fallback;
   infeasible += record.status == control::Status::infeasible;
   limited += record.limited;
@@ -65,6 +66,15 @@ void RunStatistics::noteSensing(const control::ObservedTick& tick) {
     note(ignored_contacts_, link < 0 ? "" : model.frames()[static_cast<size_t>(link)].name, tick.sensed.time);
 }
 
+void RunStatistics::noteSpeeds(const control::ObservedTick& tick) {
+  const dynamics::Model& model = tick.controller.model();
+  const Eigen::VectorXd& limits = model.velocityLimit();
+  if (tick.truth.qd.size() != limits.size()) return;
+  for (Eigen::Index i = 0; i < limits.size(); ++i)
+    if (limits[i] > 0 && std::abs(tick.truth.qd[i]) > limits[i])
+      note(fast_joints_, model.jointNames()[static_cast<size_t>(i)], tick.truth.time);
+}
+
 std::vector<std::string> RunStatistics::warnings() const {
   std::vector<std::string> warnings;
   const auto first = [](const Fault& fault) {
@@ -83,6 +93,13 @@ std::vector<std::string> RunStatistics::warnings() const {
   for (const Fault& link : ignored_contacts_) {
     warnings.push_back((link.name.empty() ? "contacts of no link" : "contacts of link '" + link.name + "'") +
                        " were no numbers" + first(link) + std::to_string(link.ticks) + " were ignored");
+  }
+  if (!fast_joints_.empty()) {
+    const Fault& joint = fast_joints_.front();
+    const std::string others = std::to_string(fast_joints_.size() - 1);
+    warnings.push_back("joint '" + joint.name + "' was faster than its velocity limit" + first(joint) +
+                       std::to_string(joint.ticks) + " ticks" +
+                       (fast_joints_.size() > 1 ? "; and " + others + " more" : ""));
   }
   const std::string of_all = " of " + std::to_string(ticks_) + " ticks";
   if (late > 0) warnings.push_back("the back end missed its deadline in " + std::to_string(late) + of_all);

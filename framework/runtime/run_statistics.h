@@ -36,6 +36,8 @@ class RunStatistics final : public control::Observer {
   const std::vector<Fault>& lostJoints() const { return lost_joints_; }
   /// Links some of whose contacts were no numbers and were ignored; "" for contacts of no link.
   const std::vector<Fault>& ignoredContacts() const { return ignored_contacts_; }
+  /// Joints that moved faster than their own velocity limit.
+  const std::vector<Fault>& fastJoints() const { return fast_joints_; }
   /// What the reader of the run's figures must know, a sentence each.
   std::vector<std::string> warnings() const;
 
@@ -55,6 +57,7 @@ class RunStatistics final : public control::Observer {
  private:
   void keepTime(double tick_us);
   void noteSensing(const control::ObservedTick& tick);
+  void noteSpeeds(const control::ObservedTick& tick);
 
   long ticks_ = 0;
   long stride_ = 1;                                                ///< every how many-th time is kept
@@ -62,6 +65,7 @@ class RunStatistics final : public control::Observer {
   std::vector<Fault> unusable_;
   std::vector<Fault> lost_joints_;
   std::vector<Fault> ignored_contacts_;
+  std::vector<Fault> fast_joints_;
 };
 
 }  // namespace tactus::runtime

@@ -34,7 +34,15 @@ SensingPlant::SensingPlant(std::unique_ptr<Plant> plant, std::vector<NamedSensor
   for (const NamedSensor& sensor : sensors_) readings += countOf(sensor.rows);
   felt_.contacts.reserve(control::SensingGuard::contact_capacity);
   felt_.readings.setZero(readings);
+  for (const NamedSensor& named : sensors_)
+    faults_.push_back({named.name, named.sensor->fault() ? named.sensor->fault()->kind : ""});
   feel();
+}
+
+void SensingPlant::faults(std::vector<const control::FaultRecord*>& records) const {
+  plant_->faults(records);
+  for (const control::FaultRecord& record : faults_)
+    if (!record.kind.empty()) records.push_back(&record);
 }
 
 void SensingPlant::advance(const Eigen::VectorXd& torque, double duration) {
@@ -43,10 +51,13 @@ void SensingPlant::advance(const Eigen::VectorXd& torque, double duration) {
 }
 
 void SensingPlant::archive(control::Archive& archive) {
-  archive.within("world", [&] { plant_->archive(archive); });
+  plant_->archive(archive);
   if (sensors_.empty()) return;
-  for (const NamedSensor& named : sensors_)
-    archive.within("sensor/" + named.name, [&] { named.sensor->archive(archive); });
+  for (std::size_t i = 0; i < sensors_.size(); ++i)
+    archive.within("sensor/" + sensors_[i].name, [&] {
+      sensors_[i].sensor->archive(archive);
+      if (!faults_[i].kind.empty()) archive("fault", faults_[i]);
+    });
   const std::size_t missing = archive.missing().size();
   archiveFelt(archive);
   if (archive.missing().size() != missing) feel();                 // the state is of other sensors
@@ -76,7 +87,8 @@ void SensingPlant::feel() {
   felt_.qd = truth.qd;
   felt_.contacts.assign(truth.contacts.begin(), truth.contacts.end());
   int at = 0;
-  for (const NamedSensor& named : sensors_) {
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    const NamedSensor& named = sensors_[i];
     const int count = countOf(named.rows);
     try {
       named.sensor->sense(truth, felt_, felt_.readings.segment(at, count));
@@ -85,6 +97,7 @@ void SensingPlant::feel() {
     } catch (...) {
       fail(named, truth.time, "it threw something that is not a std::exception");
     }
+    if (const control::Sensor::Fault* fault = named.sensor->fault()) faults_[i].note(truth.time, fault->strikes);
     at += count;
   }
 }

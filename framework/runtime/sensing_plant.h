@@ -28,6 +28,8 @@ class SensingPlant final : public Plant {
   const control::Sensed& sense() const override { return sensors_.empty() ? plant_->sense() : felt_; }
   const control::Sensed& truth() const override { return plant_->truth(); }
   std::span<const control::ObjectMotion> objects() const override { return plant_->objects(); }
+  /// Those of the plant, then those of sensors that are faults.
+  void faults(std::vector<const control::FaultRecord*>& records) const override;
   void advance(const Eigen::VectorXd& torque, double duration) override;
   void archive(control::Archive& archive) override;
 
@@ -38,6 +40,7 @@ class SensingPlant final : public Plant {
   std::unique_ptr<Plant> plant_;
   std::vector<NamedSensor> sensors_;
   control::Sensed felt_;
+  std::vector<control::FaultRecord> faults_;                       // by sensor; without a kind where it is none
 };
 
 }  // namespace tactus::runtime

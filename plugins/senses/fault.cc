@@ -64,6 +64,7 @@ Fault::Fault(const SensorContext& context)
           : kind == "nan"   ? Kind::nan
           : kind == "jump"  ? Kind::jump
                             : Kind::late;
+  told_.kind = kind;
   if (until_ <= from_) throw ElementError("until", "it is over before it begins");
   if (values.has("links"))
     for (const int link : context.frames("links")) links_[static_cast<std::size_t>(link)] = true;
@@ -117,7 +118,7 @@ bool Fault::strikes(const ContactRecord& contact) const {
 
 void Fault::doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) {
   const bool active = truth.time >= from_ - tolerance_ && truth.time < until_ - tolerance_;
-  readings[0] = active;
+  readings[0] = told_.strikes = active;
   if (kind_ == Kind::stuck && (!active || !started_)) remember(felt);
   if (kind_ == Kind::late) {
     copy(felt, held_readings_.size(), past_[ticks_ % past_.size()]);

@@ -26,6 +26,7 @@ class Fault final : public control::Sensor {
  public:
   explicit Fault(const control::SensorContext& context);
   static void registerIn(control::Registry& registry);
+  const control::Sensor::Fault* fault() const override { return &told_; }
 
  private:
   enum class Kind { dropped, stuck, nan, jump, late };
@@ -53,6 +54,7 @@ class Fault final : public control::Sensor {
   void tellLate(control::Sensed& felt);
 
   Kind kind_;
+  control::Sensor::Fault told_;
   double from_, until_, offset_;                                   // s, s, rad or m
   double tolerance_;                                               // s
   std::vector<bool> links_;

@@ -43,6 +43,15 @@ const std::string everything = R"(<stack format="1" name="whole">
             hold-stiffness="501" hold-damping="16" hold-rotation-stiffness="2.5" hold-rotation-damping="0.03">
       <sphere radius="0.15"/><at time="0.77" by="0 0 0.17"/></object>
   </scene>
+  <faults>
+    <torque-loss name="weak" joints="a1 a3" factor="0.41" from="0.161" until="0.871"/>
+    <torque-stuck name="frozen" joints="a2" from="0.162" until="0.872"/>
+    <torque-delay name="late" joints="a4" delay="0.004" from="0.163" until="0.873"/>
+    <wrong-mass name="load" link="flange" factor="1.41" added="0.42" point="0 0 0.043" from="0.164" until="0.874"/>
+    <wrong-mass name="lead" object="loose" factor="1.43" from="0.166" until="0.876"/>
+    <shove name="push" object="loose" force="0 0 4.5" moment="0 0 0.46" point="0 0 0.047" from="0.165" until="0.875"/>
+    <shove name="kick" link="flange" impulse="0 0 4.8" until="0.877"/>
+  </faults>
   <signals><test.probe name="a"/></signals>
   <level priority="2" weight="5" strict="false" active="true" active-from="0.1" active-until="0.8" active-ramp="0.2">
     <test.pull name="p" stiffness="${press}"/></level>
@@ -128,6 +137,37 @@ const std::vector<Change> changes{
     {"object/hold-rotation-damping", "\"0.03\"", "\"0.04\""},
     {"at/time", "\"0.77\"", "\"0.75\""},
     {"at/by", "0 0 0.17", "0 0 0.18"},
+    {"torque-loss/name", "weak", "feeble"},
+    {"torque-loss/joints", "a1 a3", "a1"},
+    {"torque-loss/factor", "\"0.41\"", "\"0.51\""},
+    {"torque-loss/from", "\"0.161\"", "\"0.261\""},
+    {"torque-loss/until", "\"0.871\"", "\"0.971\""},
+    {"torque-stuck/name", "frozen", "cold"},
+    {"torque-stuck/joints", "joints=\"a2\"", "joints=\"all\""},
+    {"torque-stuck/from", "\"0.162\"", "\"0.262\""},
+    {"torque-stuck/until", "\"0.872\"", "\"0.972\""},
+    {"torque-delay/name", "name=\"late\"", "name=\"slow\""},
+    {"torque-delay/joints", "joints=\"a4\"", "joints=\"a5\""},
+    {"torque-delay/delay", "\"0.004\"", "\"0.006\""},
+    {"torque-delay/from", "\"0.163\"", "\"0.263\""},
+    {"torque-delay/until", "\"0.873\"", "\"0.973\""},
+    {"wrong-mass/name", "name=\"load\"", "name=\"weight\""},
+    {"wrong-mass/link", "link=\"flange\" factor", "link=\"lwr_6\" factor"},
+    {"wrong-mass/object", "object=\"loose\" factor", "object=\"table\" factor"},
+    {"wrong-mass/factor", "1.41", "1.51"},
+    {"wrong-mass/added", "\"0.42\"", "\"0.52\""},
+    {"wrong-mass/point", "0.043", "0.053"},
+    {"wrong-mass/from", "\"0.164\"", "\"0.264\""},
+    {"wrong-mass/until", "\"0.874\"", "\"0.974\""},
+    {"shove/name", "name=\"push\"", "name=\"hit\""},
+    {"shove/link", "link=\"flange\" impulse", "link=\"lwr_6\" impulse"},
+    {"shove/object", "object=\"loose\" force", "object=\"table\" force"},
+    {"shove/force", "0 0 4.5", "0 0 5.5"},
+    {"shove/moment", "0.46", "0.56"},
+    {"shove/impulse", "4.8", "5.8"},
+    {"shove/point", "0.047", "0.057"},
+    {"shove/from", "\"0.165\"", "\"0.265\""},
+    {"shove/until", "\"0.875\"", "\"0.975\""},
     {"level/priority", "priority=\"2\"", "priority=\"3\""},
     {"level/weight", "weight=\"5\"", "weight=\"6\""},
     {"level/strict", "backend=\"all\"", "backend=\"none\""},       // which refuses strict levels: see below
@@ -192,6 +232,27 @@ void write(const dsl::Stack& stack, std::ostream& out) {
     out << "\n" << target.metric << " " << target.lower.value_or(-1) << " " << target.upper.value_or(-1);
 }
 
+void write(const description::Faults& faults, std::ostream& out) {
+  const auto head = [&](const auto& fault) {
+    out << "\n" << fault.name << " " << fault.window.from << " " << fault.window.until;
+  };
+  for (const description::TorqueFault& fault : faults.torques) {
+    head(fault);
+    out << " " << static_cast<int>(fault.kind) << " " << fault.factor << " " << fault.delay;
+    for (const int joint : fault.joints) out << " " << joint;
+  }
+  for (const description::WrongMass& fault : faults.masses) {
+    head(fault);
+    out << " " << fault.body.link << " " << fault.body.object << " " << fault.factor << " " << fault.added << " "
+        << fault.point.transpose();
+  }
+  for (const description::Shove& fault : faults.shoves) {
+    head(fault);
+    out << " " << fault.body.link << " " << fault.body.object << " " << fault.force_W.transpose() << " "
+        << fault.moment_W.transpose() << " " << fault.point.transpose();
+  }
+}
+
 void write(const control::Controller& controller, std::ostream& out) {
   const control::ControllerOptions& options = controller.options();
   out << "\n" << controller.period() << " " << options.torque_rate << " " << options.ramp << " " << options.hold << " "
@@ -218,6 +279,7 @@ std::string effectOf(const std::string& text) {
   try {
     const dsl::Stack stack = dsl::readStack(writeFile("stack.xml", text), registry, readOptions());
     write(stack, out);
+    write(stack.faults, out);
     write(*dsl::compile(stack, registry), out);
   } catch (const dsl::InvalidStack& invalid) {
     for (const dsl::Diagnostic& diagnostic : invalid.diagnostics) out << dsl::render(diagnostic) << "\n";

@@ -59,6 +59,7 @@ void expectSame(const dsl::Stack& a, const dsl::Stack& b) {
       expectSameValues(a.objects[i].shapes[k], b.objects[i].shapes[k]);
     }
   }
+  expectSameInstances(a.fault_elements, b.fault_elements);
   expectSameInstances(a.signals, b.signals);
   ASSERT_EQ(a.levels.size(), b.levels.size());
   for (std::size_t i = 0; i < a.levels.size(); ++i) {
@@ -93,6 +94,8 @@ const std::string rich =
     "<box size=\"0.6 0.6 0.02\"/><plane pose=\"0 0 -1 0.1 0.2 0.3\"/></object>"
     "<object name=\"bump\" on=\"table\" pose=\"0.04 0.04 -0.015\"><capsule radius=\"${k}\" "
     "length=\"0.2\"/></object></scene>\n"
+    "<faults><torque-loss name=\"f1\" joints=\"a1\n a2\" factor=\"${k}\" until=\"2\"/>"
+    "<shove name=\"f2\" link=\"flange\" impulse=\"0 0 ${k}\" until=\"0.5\"/></faults>\n"
     "<signals><test.probe name=\"t\"/></signals>\n"
     "<level priority=\"1\" strict=\"true\" active-from=\"${k}\"><test.pull name=\"p\" active=\"t.value\" active-ramp=\"0\" class=\"soft\" "
     "joints=\"a1\n  a2\" "

@@ -111,12 +111,13 @@ class PendulumPlant final : public runtime::Plant {
 };
 
 inline std::unique_ptr<control::Controller> pendulumController(double target, bool with_kkt = false,
-                                                               long fails_from = -1) {
+                                                               long fails_from = -1,
+                                                               const description::Robot& robot = pendulum()) {
   std::vector<control::NamedSignal> signals;
   signals.push_back({"clock", std::make_unique<TickCounter>()});
   std::vector<control::Level> levels(1);
   levels[0].tasks.push_back({"lift", std::make_unique<Spring>(target)});
-  return std::make_unique<control::Controller>(std::make_shared<dynamics::Model>(pendulum()), std::move(signals),
+  return std::make_unique<control::Controller>(std::make_shared<dynamics::Model>(robot), std::move(signals),
                                                std::move(levels), std::make_unique<SumOfTasks>(with_kkt, fails_from),
                                                0.001, Eigen::Vector3d(0, 0, -gravity));
 }

@@ -103,6 +103,25 @@ TEST(RunStatistics, NamesWhatWasNotSensed) {
                   "contacts of link 'bob' were no numbers, first at t = 0.25 s: 60 were ignored"));
 }
 
+TEST(RunStatistics, NamesTheFirstJointThatIsTooFast) {
+  description::Robot fast = tactus::testing::pendulum();
+  const auto warningsWith = [&](double limit) {
+    fast.joints[0].velocity = limit;
+    PendulumPlant plant;
+    RunStatistics statistics(100);
+    const std::atomic<bool> stop{false};
+    runLoop(plant, *pendulumController(0.5, false, -1, fast), 0.1, {&statistics}, stop);
+    return statistics.warnings();
+  };
+  const std::vector<std::string> warnings = warningsWith(0.5);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0],
+              ::testing::AllOf(::testing::StartsWith("joint 'hinge' was faster than its velocity limit, first at t = "),
+                               ::testing::EndsWith(" ticks")));
+  EXPECT_THAT(warningsWith(50), ::testing::ElementsAre());
+  EXPECT_THAT(warningsWith(0), ::testing::ElementsAre()) << "a limit that nobody knew";
+}
+
 TEST(RunStatistics, CountsWhoseTorqueWasApplied) {
   PendulumPlant plant;
   RunStatistics statistics(100);

@@ -179,6 +179,18 @@ TEST(Errors, RunawayNamesJointSpeedTimeAndCausesAndKeepsTheLastGoodStep) {
   EXPECT_DOUBLE_EQ(plant.sense().time, 0.004);
 }
 
+TEST(Errors, AJointRunsAwayFarBeyondItsOwnVelocityLimit) {
+  description::Robot robot = pendulum();
+  const auto messageWith = [&](double limit, double torque) {
+    robot.joints[1].velocity = limit;
+    SimbodyPlant plant(robot, {}, Eigen::Vector2d(0.1, 0));
+    return messageOf([&] { plant.advance(Eigen::Vector2d(0, torque), 0.01); });
+  };
+  EXPECT_THAT(messageWith(2, 1e3), HasSubstr("(limit 10)"));
+  EXPECT_THAT(messageWith(0, 1e7), HasSubstr("(limit 100)")) << "a limit that nobody knew";
+  EXPECT_THAT(messageWith(50, 1e7), HasSubstr("(limit 100)"));
+}
+
 TEST(Errors, InfiniteAccelerationIsALostState) {
   SimbodyPlant plant(pendulum(), {}, Eigen::Vector2d(0.1, 0));
   EXPECT_THAT(messageOf([&] { plant.advance(Eigen::Vector2d(1e308, -1e308), 1e-3); }), HasSubstr("Usual causes"));
