@@ -84,9 +84,12 @@ void LinkWrenches::evaluate(const std::vector<BodyMotion>& motions, const std::v
       add(-wrench.force_W, motions[static_cast<std::size_t>(body)].p_WB);
       moment -= wrench.torque_W;
     }
-    for (const control::ContactRecord& contact : contacts)
-      if (subtree.parted[static_cast<std::size_t>(contact.link)])
-        add(contact.force_N * contact.normal_W + contact.friction_W, contact.point_W);
+    for (const control::ContactRecord& contact : contacts) {
+      const Eigen::Vector3d force_W = contact.force_N * contact.normal_W + contact.friction_W;
+      if (subtree.parted[static_cast<std::size_t>(contact.link)]) add(force_W, contact.point_W);
+      if (contact.isOfSelf() && subtree.parted[static_cast<std::size_t>(contact.other_link)])
+        add(-force_W, contact.point_W);
+    }
     const Eigen::Matrix3d R_LW = (own.R_WB * subtree.carrier.pose.linear()).transpose();
     wrenches.push_back({subtree.link, R_LW * force, R_LW * moment});
   }
