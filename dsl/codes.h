@@ -53,6 +53,8 @@ inline constexpr Code carrier_not_upright{"E053", "an object stands on one whose
 inline constexpr Code joint_not_for_stacks{"E054", "a joint follows another one or has several degrees of freedom"};
 inline constexpr Code unfit_rate{"E055", "a tick is not a whole number of the plant's steps"};
 inline constexpr Code immovable_body{"E056", "a fault acts on what no force moves"};
+inline constexpr Code pair_never_touches{"E057", "two bodies of a pair can never touch"};
+inline constexpr Code duplicate_pair{"E058", "the material of a pair of bodies is given twice"};
 // Compiling.
 inline constexpr Code lacking_ability{"E060", "the back end cannot honour what the stack asks for"};
 inline constexpr Code refused_by_factory{"E061", "a task, a signal or a back end refuses its values"};
@@ -99,7 +101,8 @@ inline constexpr std::array all_codes{
     code::unknown_port,       code::wrong_port_type,    code::wrong_port_unit,    code::include_outside,    code::unknown_class,    code::unknown_parameter,
     code::unknown_back_end,   code::unknown_option,     code::reference_cycle,  code::unknown_model,
     code::wrong_start,        code::start_outside_limits, code::carrier_not_upright, code::joint_not_for_stacks,
-    code::unfit_rate,         code::immovable_body,     code::lacking_ability,
+    code::unfit_rate,         code::immovable_body,     code::pair_never_touches, code::duplicate_pair,
+    code::lacking_ability,
     code::refused_by_factory, code::unfit_for_dynamics, code::plugin_failed,    code::no_root_link,
     code::several_root_links, code::kinematic_loop,     code::unsupported_joint, code::reversed_limits,
     code::refused_by_urdf,    code::bad_mimic,          code::impossible_robot, code::no_inertia,

@@ -14,6 +14,7 @@
 #include "dsl/reference_checker.h"
 #include "dsl/scene_reader.h"
 #include "dsl/stack_document.h"
+#include "dsl/typed_attributes.h"
 #include "dsl/upgrade.h"
 
 namespace tactus::dsl {
@@ -96,7 +97,9 @@ class StackReader {
         readModel(search.file, element);
       }
     }
-    if (robot_known_) readStart(element);
+    if (!robot_known_) return;
+    readStart(element);
+    readSelfContact(element);
   }
 
   void readModel(const std::string& file, const CheckedElement& element) {
@@ -171,6 +174,24 @@ class StackReader {
                                   ": its limits are " + control::formatNumber(joint(i).lower) + " and " +
                                   control::formatNumber(joint(i).upper));
     }
+  }
+
+  void readSelfContact(const CheckedElement& element) {
+    if (!element.values.has("self-contact")) return;
+    stack_.self_contact.clear();
+    std::vector<int> links;
+    for (const std::string& word : splitWords(element.values.text("self-contact"))) {
+      stack_.self_contact += (stack_.self_contact.empty() ? "" : " ") + word;
+      if (const int link = stack_.robot.linkIndex(word); link >= 0) links.push_back(link);
+      for (const description::Group& group : stack_.robot.link_groups)
+        if (group.name == word)
+          for (const std::string& member : group.members) links.push_back(stack_.robot.linkIndex(member));
+    }
+    if (stack_.self_contact == "all")
+      for (int link = 0; link < static_cast<int>(stack_.robot.links.size()); ++link) links.push_back(link);
+    if (links.empty()) return;                                     // unknown names are told with the other references
+    stack_.self_contacts = dynamics::findSelfContact(stack_.robot, stack_.start_q, links);
+    stack_.robot.self_contact = stack_.self_contacts.touching;
   }
 
   /// A named element; its name is taken from then on.
@@ -446,6 +467,7 @@ class StackReader {
 
   void checkReferences(const CheckedElement& root) {
     ReferenceChecker references(stack_, robot_known_, findings_);
+    if (const auto* robot = root.first("robot")) references.check(*robot);
     std::vector<const CheckedElement*> sources;
     for (const char* lists : {"sensors", "signals"})
       for (const CheckedElement* list : root.all(lists))

@@ -1,10 +1,13 @@
 #include "dsl/scene_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "dsl/nearest_name.h"
+#include "dsl/typed_attributes.h"
 #include "framework/geometry/uniform_body.h"
 
 namespace tactus::dsl {
@@ -46,6 +49,7 @@ class SceneReader {
     if (scene_.values.has("gravity")) stack_.gravity = scene_.values.vector3("gravity");
     for (const CheckedElement* element : scene_.all("object")) addObject(*element);
     for (std::size_t i = 0; i < stack_.objects.size(); ++i) place(i);
+    for (const CheckedElement* element : scene_.all("pair")) addPair(*element);
   }
 
  private:
@@ -83,6 +87,12 @@ class SceneReader {
     object.object.mobility = mobilities.at(text);
     object.object.holder = {element.values.real("hold-stiffness"), element.values.real("hold-damping"),
                             element.values.real("hold-rotation-stiffness"), element.values.real("hold-rotation-damping")};
+    if (element.values.has("hold-until")) {
+      object.object.holder.until = element.values.real("hold-until");
+      if (text != "held")
+        sayAt(element, "hold-until", code::attributes_clash,
+              "attribute 'hold-until': a " + text + " object is held by nothing");
+    }
     const bool by_forces = text == "free" || text == "held", on_path = text == "held" || text == "moved";
     if (by_forces && !element.values.has("mass"))
       findings_.error(code::missing_attribute, *element.xml, "a " + text + " object needs the attribute 'mass'");
@@ -214,6 +224,136 @@ class SceneReader {
     if (std::abs(frame.linear()(2, 2) - 1) > level)
       return say(code::carrier_not_upright, "'" + object.on + "' is tilted: an object stands only on a level top");
     return true;
+  }
+
+  /// What a name in a pair stands for.
+  struct Named {
+    std::vector<description::Party> parties;                       // none: unknown
+    int closeness = 2;
+  };
+
+  Named partiesOf(const std::string& name) const {
+    if (const auto object = index_.find(name); object != index_.end())
+      return {{{.object = static_cast<int>(object->second)}}};
+    if (name == "robot") return {{{}}, 0};
+    if (const int link = stack_.robot.linkIndex(name); link >= 0) return {{{.link = link}}};
+    Named group{{}, 1};
+    for (const description::Group& links : stack_.robot.link_groups)
+      if (links.name == name)
+        for (const std::string& link : links.members) group.parties.push_back({.link = stack_.robot.linkIndex(link)});
+    return group;
+  }
+
+  std::string nameOf(const description::Party& party) const {
+    if (party.object >= 0) return "'" + stack_.objects[static_cast<std::size_t>(party.object)].object.name + "'";
+    if (party.link >= 0) return "'" + stack_.robot.links[static_cast<std::size_t>(party.link)].name + "'";
+    return "the robot";
+  }
+
+  void addPair(const CheckedElement& element) {
+    if (!element.complete) return;
+    const XmlAttribute& written = *element.xml->attribute("between");
+    const std::vector<std::string> words = splitWords(element.values.text("between"));
+    if (words.size() != 2)
+      return findings_.errorAtValue(code::bad_value, *element.xml, written,
+                                    "attribute 'between': expected two names, found " + std::to_string(words.size()));
+    const bool robot_known = !stack_.robot.links.empty();
+    Named ends[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+      ends[i] = partiesOf(words[i]);
+      if (!ends[i].parties.empty()) continue;
+      if (robot_known) sayUnknown(element, written, words[i], i);
+      return;
+    }
+    PairDescription pair;
+    pair.closeness = ends[0].closeness + ends[1].closeness;
+    pair.values = element.values;
+    const auto number = [&](const char* name) {
+      return element.values.has(name) ? std::optional(element.values.real(name)) : std::nullopt;
+    };
+    std::string why_never;
+    bool touch = false;
+    for (const description::Party& one : ends[0].parties)
+      for (const description::Party& other : ends[1].parties) {
+        pair.pairs.push_back(
+            {one, other, number("stiffness"), number("dissipation"), number("friction"), number("rolling")});
+        const std::string why = whyNever(one, other);
+        touch = touch || why.empty();
+        if (why_never.empty()) why_never = why;
+        if (const PairDescription* taken = findPair(pair.closeness, one, other))
+          return findings_.errorAtValue(
+              code::duplicate_pair, *element.xml, written,
+              "the material of " + nameOf(one) + " and " + nameOf(other) + " is given in line " +
+                  std::to_string(taken->values.value("between").origin.place.line) + " already");
+      }
+    if (!touch)
+      return findings_.errorAtValue(code::pair_never_touches, *element.xml, written,
+                                    "'" + words[0] + "' and '" + words[1] + "' never touch: " + why_never);
+    stack_.pairs.push_back(std::move(pair));
+  }
+
+  void sayUnknown(const CheckedElement& element, const XmlAttribute& written, const std::string& name,
+                  std::size_t word) {
+    std::vector<std::string> names{"robot"};
+    for (const auto& [object, index] : index_) names.push_back(object);
+    for (const description::Link& link : stack_.robot.links) names.push_back(link.name);
+    for (const description::Group& group : stack_.robot.link_groups) names.push_back(group.name);
+    findings_.errorAtWord(code::unknown_object, *element.xml, written, word,
+                          "neither the scene has an object nor the robot a link or group '" + name + "'",
+                          nearestName(name, names));
+  }
+
+  const PairDescription* findPair(int closeness, const description::Party& one, const description::Party& other) const {
+    for (const PairDescription& pair : stack_.pairs)
+      for (const description::ContactPair& each : pair.pairs)
+        if (pair.closeness == closeness &&
+            ((each.one == one && each.other == other) || (each.one == other && each.other == one)))
+          return &pair;
+    return nullptr;
+  }
+
+  bool isForceMoved(const description::Party& party) const {
+    const description::Mobility mobility = stack_.objects[static_cast<std::size_t>(party.object)].object.mobility;
+    return mobility == description::Mobility::free || mobility == description::Mobility::held;
+  }
+
+  /// "" where the two can touch.
+  std::string whyNever(const description::Party& one, const description::Party& other) const {
+    if (one.object >= 0 && one == other) return "an object does not touch itself";
+    if (one.object >= 0 && other.object >= 0)
+      return isForceMoved(one) || isForceMoved(other) ? "" : "no force moves either of them";
+    if (one.object >= 0 || other.object >= 0) return whyNoObject(one.object >= 0 ? other : one);
+    const auto has = [](const description::Party& party, int link) { return party.link < 0 || party.link == link; };
+    const auto& touching = stack_.self_contacts.touching;
+    const bool meet = std::any_of(touching.begin(), touching.end(), [&](const description::LinkPair& pair) {
+      return (has(one, pair.one) && has(other, pair.other)) || (has(one, pair.other) && has(other, pair.one));
+    });
+    return meet ? ""
+                : "these links pass through each other (self-contact of <robot>; tactus explain says which do not)";
+  }
+
+  /// "" where a link, or the robot, can touch objects.
+  std::string whyNoObject(const description::Party& links) const {
+    if (links.link < 0) return "";
+    if (stack_.robot.links[static_cast<std::size_t>(links.link)].shapes.empty())
+      return "link " + nameOf(links) + " has no shape";
+    for (int link = links.link; link >= 0;) {
+      const auto above = std::find_if(stack_.robot.joints.begin(), stack_.robot.joints.end(),
+                                      [link](const description::Joint& joint) { return joint.child == link; });
+      if (above == stack_.robot.joints.end()) break;
+      if (above->type != description::JointType::fixed) return "";
+      link = above->parent;
+    }
+    return "link " + nameOf(links) + " is fixed to the world";
+  }
+
+  /// At an attribute where it is written, else at the element.
+  void sayAt(const CheckedElement& element, const std::string& attribute, const Code& code,
+             const std::string& message) {
+    if (const XmlAttribute* written = element.xml->attribute(attribute))
+      findings_.errorAtValue(code, *element.xml, *written, message);
+    else
+      findings_.error(code, *element.xml, message);
   }
 
   const CheckedElement& scene_;

@@ -45,6 +45,11 @@ description::Scene Stack::scene(std::uint64_t seed) const {
     }
     scene.objects.push_back(std::move(object));
   }
+  constexpr int closest = 4;
+  for (int closeness = 0; closeness <= closest; ++closeness)
+    for (const PairDescription& described : pairs)
+      if (described.closeness == closeness)
+        scene.pairs.insert(scene.pairs.end(), described.pairs.begin(), described.pairs.end());
   return scene;
 }
 

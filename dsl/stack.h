@@ -9,6 +9,7 @@
 #include "framework/description/faults.h"
 #include "framework/description/robot.h"
 #include "framework/description/scene.h"
+#include "framework/dynamics/self_contact.h"
 
 namespace tactus::dsl {
 
@@ -37,6 +38,14 @@ struct ObjectDescription {
   std::string on;                                     ///< the object that carries it, whose jitter it shares; "" = none
   control::ElementValues values;                                   ///< as read; `pose` is that in the carrier's top
   std::vector<control::ElementValues> shapes;                      ///< of object.primitives, as read
+};
+
+/// A <pair> of the scene: what it says, for each two that it names.
+struct PairDescription {
+  std::vector<description::ContactPair> pairs;
+  /// How closely it names them: 0 the robot, 1 a group of links, 2 a link or an object, both ends added.
+  int closeness = 0;
+  control::ElementValues values;                                   ///< as read
 };
 
 /// An element as it was read, after includes, parameters, classes and defaults.
@@ -73,7 +82,10 @@ struct Stack {
   std::string robot_model;                                         ///< as written
   std::string robot_file;                                          ///< where it was found
   Eigen::VectorXd start_q;                                         ///< dof
+  std::string self_contact = "none";                               ///< as written: which links touch each other
+  dynamics::SelfContact self_contacts;                             ///< what comes of it
   std::vector<ObjectDescription> objects;
+  std::vector<PairDescription> pairs;                              ///< as written
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);
   std::vector<ElementInstance> sensors;                            ///< those among the faults last
   description::Faults faults;                                      ///< of drives and bodies

@@ -93,7 +93,12 @@ ElementRow robotRow() {
           .kind = ElementKind::structure,
           .description = "The robot that is controlled.",
           .attributes = {{.name = "model", .type = ValueType::file, .required = true,
-                          .description = "A model by its name, or a URDF file relative to this one."}},
+                          .description = "A model by its name, or a URDF file relative to this one."},
+                         {.name = "self-contact", .type = ValueType::links, .default_text = "none",
+                          .description = "Links that touch each other: `none` pass through, of `all` or of those named "
+                                         "each feels the others, but not its neighbours, nor what it overlaps at the "
+                                         "start; `tactus explain` lists these.",
+                          .choices = {"none", "all"}}},
           .children = {{"start", 0, 1}}};
 }
 
@@ -111,7 +116,27 @@ ElementRow sceneRow() {
           .description = "The world around the robot.",
           .attributes = {{.name = "gravity", .type = ValueType::reals, .unit = "m/s²", .default_text = "0 0 -9.81",
                           .description = "In the world frame, z up.", .count = 3}},
-          .children = {{"object"}, {"include"}}};
+          .children = {{"object"}, {"pair"}, {"include"}}};
+}
+
+ElementRow pairRow() {
+  return {.name = "pair",
+          .kind = ElementKind::structure,
+          .description = "What holds where two bodies touch, instead of the usual rule; what is not said is still by "
+                         "that rule, or by a pair that names the two less closely.",
+          .attributes = {{.name = "between", .type = ValueType::text, .required = true,
+                          .description = "Two names: objects, `robot`, links or groups of links.  Of several pairs for "
+                                         "the same two, a link or object counts before a group, a group before "
+                                         "`robot`."},
+                         {.name = "stiffness", .type = ValueType::real, .unit = "N/m",
+                          .description = "Of both surfaces together.", .lower = 0, .lower_open = true},
+                         {.name = "dissipation", .type = ValueType::real, .unit = "s/m",
+                          .description = "Of the Hunt–Crossley normal force.", .lower = 0},
+                         {.name = "friction", .type = ValueType::real, .unit = "1",
+                          .description = "Coulomb coefficient μ.", .lower = 0},
+                         {.name = "rolling", .type = ValueType::real, .unit = "m",
+                          .description = "ρ, as for an object.", .lower = 0}},
+          .presence = {{control::Presence::any_of, {"stiffness", "dissipation", "friction", "rolling"}}}};
 }
 
 ElementRow objectRow() {
@@ -167,7 +192,10 @@ ElementRow objectRow() {
                           .description = "Of the spring that holds it upright.", .lower = 0},
                          {.name = "hold-rotation-damping", .type = ValueType::real, .unit = "N m s/rad",
                           .default_text = formatNumber(holder.rotation_damping),
-                          .description = "Of the damper, against the path's turning.", .lower = 0}},
+                          .description = "Of the damper, against the path's turning.", .lower = 0},
+                         {.name = "hold-until", .type = ValueType::real, .unit = "s",
+                          .description = "When a held one is let go, and is free from then on; not given: never.",
+                          .lower = 0, .lower_open = true}},
           .children = {{"@shape", 1}, {"at"}},
           .presence = {{control::Presence::together, {"inertia", "centre"}}, {control::Presence::needs, {"inertia", "mass"}}}};
 }
@@ -315,8 +343,8 @@ ElementRow recordRow() {
 
 void addStructureElements(control::Registry& registry) {
   for (ElementRow row : {stackRow(), parameterRow(), includeRow(), defaultsRow(), pluginRow(), robotRow(), startRow(),
-                         sceneRow(), objectRow(), atRow(), sensorsRow(), signalsRow(), levelRow(), controllerRow(), alternativeRow(), runRow(),
-                         recordRow(), targetRow()})
+                         sceneRow(), pairRow(), objectRow(), atRow(), sensorsRow(), signalsRow(), levelRow(),
+                         controllerRow(), alternativeRow(), runRow(), recordRow(), targetRow()})
     registry.addStructure(std::move(row));
   addFaultElements(registry);
   addShapeElements(registry);

@@ -136,10 +136,13 @@ std::string modelText(const Stack& stack) {
 std::string writeResolved(const Stack& stack) {
   std::string out = "<?xml version=\"1.0\"?>\n<stack format=\"1\"" + attributeText("name", stack.name) + ">\n";
   for (const std::string& plugin : stack.plugins) out += "  <plugin" + attributeText("name", plugin) + "/>\n";
-  out += "  <robot" + attributeText("model", modelText(stack)) + ">\n    <start" +
+  const bool touches_itself = stack.self_contact != "none";
+  out += "  <robot" + attributeText("model", modelText(stack)) +
+         (touches_itself ? attributeText("self-contact", stack.self_contact) : "") + ">\n    <start" +
          attributeText("q", numbersText(stack.start_q)) + "/>\n  </robot>\n";
   out += "  <scene" + attributeText("gravity", numbersText(stack.gravity)) + ">\n";
   for (const ObjectDescription& object : stack.objects) out += objectText(object);
+  for (const PairDescription& pair : stack.pairs) out += leaf("    ", pair.values);
   out += "  </scene>\n";
   const std::vector<const ElementInstance*> sources = stack.sources();
   const auto list = [&](const std::string& name, const std::vector<ElementInstance>& elements) {

@@ -137,7 +137,8 @@ std::vector<SurfacePair> everyPair(const std::vector<Feature>& features, const s
   std::vector<SurfacePair> pairs;
   for (int f = 0; f < static_cast<int>(features.size()); ++f)
     for (int c = 0; c < static_cast<int>(colliders.size()); ++c)
-      pairs.push_back({f, c, scene.objects[colliders[c].owner.object].material});
+      pairs.push_back({f, c, description::materialOf(scene, partyOf(features[f].owner), partyOf(colliders[c].owner),
+                                                     scene.objects[colliders[c].owner.object].material)});
   return pairs;
 }
 

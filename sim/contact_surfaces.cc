@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "framework/description/link_shape.h"
+
 namespace tactus::sim {
 namespace {
 
@@ -38,6 +40,16 @@ std::vector<Feature> linkFeatures(const description::Robot& robot) {
     for (const description::LinkShape& shape : robot.links[link].shapes)
       std::visit([&](const auto& s) { addFeatures(s, link, features); }, shape);
   return features;
+}
+
+std::vector<Collider> linkColliders(const description::Robot& robot) {
+  std::vector<Collider> colliders;
+  for (int link = 0; link < static_cast<int>(robot.links.size()); ++link)
+    for (const description::LinkShape& shape : robot.links[link].shapes) {
+      const geometry::PosedShape solid = description::solidOf(shape);
+      colliders.push_back({{link, -1}, link, solid.shape, solid.pose});
+    }
+  return colliders;
 }
 
 std::vector<Feature> objectFeatures(const description::Object& object, int index) {

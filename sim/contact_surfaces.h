@@ -22,6 +22,8 @@ struct Owner {
   bool operator==(const Owner&) const = default;
 };
 
+inline description::Party partyOf(const Owner& owner) { return {.object = owner.object, .link = owner.link}; }
+
 /// A feeler of a body.
 struct Feature {
   Owner owner;
@@ -51,6 +53,9 @@ struct SurfacePair {
 /// with that radius r, and between two neighbours s ≤ r apart the wide faces sink by r − √(r² − s²/4) ≤ 0.134 r,
 /// which a flat object does not reach.
 std::vector<Feature> linkFeatures(const description::Robot& robot);
+
+/// The colliders of all links, in the order of links and of their shapes; each link is its own body.
+std::vector<Collider> linkColliders(const description::Robot& robot);
 
 /// Those of an object that can move, by the feelers of its shapes, in its own frame.
 std::vector<Feature> objectFeatures(const description::Object& object, int index);

@@ -84,9 +84,12 @@ void LinkWrenches::evaluate(const std::vector<BodyMotion>& motions, const std::v
       add(-wrench.force_W, motions[static_cast<std::size_t>(body)].p_WB);
       moment -= wrench.torque_W;
     }
-    for (const control::ContactRecord& contact : contacts)
-      if (subtree.parted[static_cast<std::size_t>(contact.link)])
-        add(contact.force_N * contact.normal_W + contact.friction_W, contact.point_W);
+    for (const control::ContactRecord& contact : contacts) {
+      const Eigen::Vector3d force_W = contact.force_N * contact.normal_W + contact.friction_W;
+      if (subtree.parted[static_cast<std::size_t>(contact.link)]) add(force_W, contact.point_W);
+      if (contact.isOfSelf() && subtree.parted[static_cast<std::size_t>(contact.other_link)])
+        add(-force_W, contact.point_W);
+    }
     for (const LinkPush& push : pushes) {
       if (!subtree.parted[static_cast<std::size_t>(push.link)]) continue;
       add(-push.force_W, push.point_W);

@@ -220,7 +220,7 @@ class SimbodyPlant::Implementation {
   }
 
   /// The features of links that can move, each in the frame of its mobilized body.  What is fixed to the world
-  /// cannot be pushed: it touches nothing.
+  /// cannot be pushed: it feels nothing.
   std::vector<Feature> movingFeatures(const description::Robot& robot) const {
     std::vector<Feature> features = linkFeatures(robot);
     for (Feature& feature : features) {
@@ -233,8 +233,14 @@ class SimbodyPlant::Implementation {
     return features;
   }
 
-  /// Links feel all objects.  Objects of which one moves feel each other: one whose feelers are all round feels for both,
-  /// else each for itself.
+  /// What holds between two, where a pair of the scene says nothing else.
+  description::ContactMaterial material(const Owner& one, const Owner& other,
+                                        const description::ContactMaterial& usual) const {
+    return description::materialOf(scene_, partyOf(one), partyOf(other), usual);
+  }
+
+  /// Links feel all objects, and those of self-contact each other.  Objects of which one moves feel each other: one
+  /// whose feelers are all round feels for both, else each for itself.
   ContactForce makeContact(const description::Robot& robot) const {
     std::vector<Feature> features = movingFeatures(robot);
     std::vector<Collider> colliders;
@@ -247,8 +253,11 @@ class SimbodyPlant::Implementation {
     std::vector<SurfacePair> pairs;
     for (int f = 0; f < static_cast<int>(features.size()); ++f)
       for (int c = 0; c < static_cast<int>(colliders.size()); ++c)
-        pairs.push_back({f, c, scene_.objects[colliders[c].owner.object].material});
+        pairs.push_back({f, c, material(features[f].owner, colliders[c].owner,
+                                        scene_.objects[colliders[c].owner.object].material)});
+    const auto links = static_cast<int>(features.size());
     addObjectPairs(features, colliders, pairs);
+    addSelfPairs(robot, links, features, colliders, pairs);
     return ContactForce(std::move(features), std::move(colliders), std::move(pairs),
                         static_cast<int>(motions_.size()), options_.contact);
   }
@@ -279,8 +288,44 @@ class SimbodyPlant::Implementation {
         const int a = features[f].owner.object, b = colliders[c].owner.object;
         if (a == b || !(isForceMoved(scene_.objects[a]) || isForceMoved(scene_.objects[b]))) continue;
         if (round[b] && (!round[a] || b < a)) continue;            // b feels for both
-        pairs.push_back({f, c, together(scene_.objects[a].material, scene_.objects[b].material)});
+        pairs.push_back({f, c, material(features[f].owner, colliders[c].owner,
+                                        together(scene_.objects[a].material, scene_.objects[b].material))});
       }
+  }
+
+  /// Of two links of Robot::self_contact the capsules of one feel the shapes of the other: a box is felt rather than
+  /// feels, and what is fixed to the world is felt; else the first one feels.  `links`: so many features are links'.
+  void addSelfPairs(const description::Robot& robot, int links, const std::vector<Feature>& features,
+                    std::vector<Collider>& colliders, std::vector<SurfacePair>& pairs) const {
+    if (robot.self_contact.empty()) return;
+    const auto isFixed = [&](int link) { return robot_.carrier(link).getMobilizedBodyIndex() == 0; };
+    const auto feels = [&](const description::LinkPair& pair) {
+      const auto hasBox = [&](int link) {
+        return std::any_of(robot.links[link].shapes.begin(), robot.links[link].shapes.end(), [](const auto& shape) {
+          return std::holds_alternative<description::BoxShape>(shape);
+        });
+      };
+      if (isFixed(pair.one) != isFixed(pair.other)) return isFixed(pair.one) ? pair.other : pair.one;
+      return hasBox(pair.one) && !hasBox(pair.other) ? pair.other : pair.one;
+    };
+    const auto first = static_cast<int>(colliders.size());
+    for (Collider& collider : linkColliders(robot)) {
+      const int link = collider.owner.link;
+      const bool touches = std::any_of(robot.self_contact.begin(), robot.self_contact.end(), [link](const auto& pair) {
+        return pair.one == link || pair.other == link;
+      });
+      if (!touches) continue;
+      collider.body = isFixed(link) ? world_body : static_cast<int>(robot_.carrier(link).getMobilizedBodyIndex());
+      collider.pose = robot_.poseInCarrier(link) * collider.pose;
+      colliders.push_back(std::move(collider));
+    }
+    for (const description::LinkPair& pair : robot.self_contact) {
+      const int feeling = feels(pair), felt = feeling == pair.one ? pair.other : pair.one;
+      for (int f = 0; f < links; ++f)
+        for (int c = first; c < static_cast<int>(colliders.size()); ++c)
+          if (features[f].owner.link == feeling && colliders[c].owner.link == felt)
+            pairs.push_back({f, c, material(features[f].owner, colliders[c].owner, {})});
+    }
   }
 
   static std::vector<LinkWrenches::Carrier> carriers(const description::Robot& described, const SimbodyRobot& robot) {
@@ -463,6 +508,7 @@ class SimbodyPlant::Implementation {
     const BodyMotion& is = motions_[objects_[object].body];
     const BodyMotion wanted = motionOn(scene_.objects[object].path, time());
     const description::Holder& holder = scene_.objects[object].holder;
+    if (time() >= holder.until - 0.5 * options_.step) return {};
     const Eigen::AngleAxisd turn(wanted.R_WB * is.R_WB.transpose());
     BodyWrench wrench;
     wrench.force_W = holder.stiffness * (wanted.p_WB - is.p_WB) + holder.damping * (wanted.linear_W - is.linear_W);

@@ -30,8 +30,9 @@ struct PlantOptions {
 };
 
 /// The robot in its scene, simulated by Simbody (tree, free bodies, gravity, forward dynamics) with Tactus's own contact
-/// force (see contact_force.h) and joint damping, friction and stops (see joint_resistance.h).  Links touch all objects;
-/// objects that move touch all others.  Semi-explicit Euler at a fixed
+/// force (see contact_force.h) and joint damping, friction and stops (see joint_resistance.h).  Links touch all objects
+/// and, as far as Robot::self_contact says, each other, with ContactMaterial's defaults; objects that move touch all
+/// others.  What Scene::pairs say goes before.  Semi-explicit Euler at a fixed
 /// step h: q̇ ← q̇ + h q̈(q, q̇, τ), q ← q + h q̇; time is a step count times h.  The same inputs give the same bits.
 /// Built from the description alone: nothing of framework/dynamics is used.
 class SimbodyPlant final : public runtime::Plant {

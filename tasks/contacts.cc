@@ -52,7 +52,9 @@ void Contacts::registerIn(Registry& registry) {
                {"missing", "missing-set", "", "Desired links without contact, D\\C."},
                {"points", "touched-points", "m", "Every point touched so far."},
                {"desired", "frame-set", "", "The desired links, D."},
-               {"touching", "scalar", "1", "How many desired links touch."}};
+               {"touching", "scalar", "1", "How many desired links touch."},
+               {"self", "scalar", "1",
+                "Touches of the robot on itself, now, above `on-force`; they are in no other port."}};
   registry.addSignal(row, [](const BuildContext& context) { return std::make_unique<Contacts>(context); });
 }
 
@@ -125,7 +127,12 @@ void Contacts::accumulateRecords(const Tick& tick) {
     link.point_W.setZero();
     link.normal_W.setZero();
   }
+  n_self_ = 0;
   for (const ContactRecord& record : tick.sensed.contacts) {
+    if (record.isOfSelf()) {
+      n_self_ += record.force_N > on_force_;
+      continue;
+    }
     LinkTouch& link = links_[record.link];
     if (!link.feels || !(record.force_N > 0)) continue;
     link.force_N += record.force_N;
@@ -203,6 +210,7 @@ const void* Contacts::doPort(std::string_view name) const {
   if (name == "points") return &points_;
   if (name == "desired") return &desired_;
   if (name == "touching") return &n_held_;
+  if (name == "self") return &n_self_;
   return nullptr;
 }
 

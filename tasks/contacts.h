@@ -10,7 +10,8 @@ namespace tactus::tasks {
 ///
 /// C are the current contacts, D the desired links (attribute `desired`).  Ports:
 /// `held` C∩D, `undesired` C\D, `missing` D\C, `all` C, `points` every point touched so far, `desired` D,
-/// `touching` the size of `held`.
+/// `touching` the size of `held`, `self` how often the robot touches itself: such touches are in no set, for they are
+/// none of the world.
 ///
 /// One contact a link reaches the tasks: its point and normal are the force-weighted means of the link's records,
 /// its force their sum.  A link comes into contact when the force stays above `on-force` for `hold`, and leaves it
@@ -54,7 +55,7 @@ class Contacts final : public control::Signal {
   control::MissingSet missing_;
   control::TouchedPoints points_;
   control::FrameSet desired_;
-  double n_held_ = 0, n_undesired_ = 0, n_points_ = 0;
+  double n_held_ = 0, n_undesired_ = 0, n_points_ = 0, n_self_ = 0;
 };
 
 }  // namespace tactus::tasks

@@ -112,6 +112,31 @@ void addValues(const ElementValues& values, ordered_json& json) {
   }
 }
 
+/// "links that touch each other: 2 pairs", then those of the links asked for that do not, and why.
+void writeSelfContact(const dsl::Stack& stack, std::ostream& out) {
+  if (stack.self_contact == "none") return;
+  const auto names = [&](const description::LinkPair& pair) {
+    return stack.robot.links[static_cast<size_t>(pair.one)].name + " and " +
+           stack.robot.links[static_cast<size_t>(pair.other)].name;
+  };
+  const size_t count = stack.self_contacts.touching.size();
+  out << "\nself-contact: " << count << (count == 1 ? " pair" : " pairs") << " of links may touch; these do not:\n";
+  for (const dynamics::SelfContact::LeftOut& left_out : stack.self_contacts.left_out)
+    out << "  " << names(left_out.links) << ": " << left_out.why << "\n";
+}
+
+ordered_json selfContactJson(const dsl::Stack& stack) {
+  const auto names = [&](const description::LinkPair& pair) {
+    return ordered_json::array({stack.robot.links[static_cast<size_t>(pair.one)].name,
+                                stack.robot.links[static_cast<size_t>(pair.other)].name});
+  };
+  ordered_json touching = ordered_json::array(), left_out = ordered_json::array();
+  for (const description::LinkPair& pair : stack.self_contacts.touching) touching.push_back(names(pair));
+  for (const dynamics::SelfContact::LeftOut& one : stack.self_contacts.left_out)
+    left_out.push_back({{"links", names(one.links)}, {"why", one.why}});
+  return {{"touching", touching}, {"left_out", left_out}};
+}
+
 bool hasOptions(const dsl::ResolvedElement& element) { return !element.options.all().empty(); }
 
 }  // namespace
@@ -139,7 +164,14 @@ int explainStack(const StackOptions& options, const std::vector<std::string>& pl
                         {"column", element.place.column},
                         {"values", attributes}});
   }
-  std::cout << (json ? jsonText({{"stack", stack.name}, {"elements", elements}}, 2) + "\n" : aligned(lines));
+  if (json) {
+    ordered_json told{{"stack", stack.name}, {"elements", elements}};
+    if (stack.self_contact != "none") told["self_contact"] = selfContactJson(stack);
+    std::cout << jsonText(told, 2) << "\n";
+  } else {
+    std::cout << aligned(lines);
+    writeSelfContact(stack, std::cout);
+  }
   return exit_done;
 }
 

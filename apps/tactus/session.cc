@@ -68,7 +68,8 @@ Session::Session(dsl::Stack stack, const control::Registry& registry)
       plant_(makePlant(stack_, registry, scene_)),
       statistics_(std::lround(stack_.run.duration / controller_->period())) {
   contacts_ = std::make_unique<runtime::ContactMetrics>(static_cast<int>(stack_.robot.links.size()),
-                                                        static_cast<int>(scene_.objects.size()), desiredLinks());
+                                                        static_cast<int>(scene_.objects.size()), desiredLinks(),
+                                                        !stack_.robot.self_contact.empty());
   for (size_t i = 0; i < stack_.signals.size() && !touched_points_; ++i) {
     touched_points_ = findPort<control::TouchedPoints>(i, "points");
   }

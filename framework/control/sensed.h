@@ -10,7 +10,8 @@
 /// What the robot feels at one instant: plain data from the plant to the controller.
 namespace tactus::control {
 
-/// One touch of a link feature (a capsule) on one primitive of an object, or of another link.
+/// One touch of a link feature (a capsule) on one primitive of an object, or of another link.  Of two links that touch
+/// there is one record: `link` presses on `other_link`, which feels the opposite.
 struct ContactRecord {
   int link = -1;                                                   ///< index into description::Robot::links
   int object = -1;                                                 ///< index into description::Scene::objects, or −1
@@ -20,6 +21,9 @@ struct ContactRecord {
   double depth = 0;                                                ///< m, > 0 while overlapping
   double force_N = 0;                                              ///< along the normal, what the robot does to the object
   Eigen::Vector3d friction_W = Eigen::Vector3d::Zero();            ///< N, tangential, what the robot does to the object
+
+  /// The robot touches itself: no touch of the world, though both links' skin feels it.
+  bool isOfSelf() const { return other_link >= 0; }
 };
 
 /// How an object of the scene moves: what the plant knows and no robot does.

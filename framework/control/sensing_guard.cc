@@ -68,7 +68,8 @@ bool SensingGuard::checkJoints(const Sensed& raw) {
 }
 
 bool SensingGuard::isUsable(const ContactRecord& contact) const {
-  return contact.link >= 0 && contact.link < links_ && areNumbers(contact.point_W) && areNumbers(contact.normal_W) &&
+  return contact.link >= 0 && contact.link < links_ && contact.other_link < links_ &&
+         areNumbers(contact.point_W) && areNumbers(contact.normal_W) &&
          isNumber(contact.force_N) && isNumber(contact.depth) && areNumbers(contact.friction_W);
 }
 

@@ -43,6 +43,8 @@ Robot combine(const std::string& name, const std::vector<Member>& members) {
       if (joint.mimic) joint.mimic->driver += first_joint;
       combined.joints.push_back(std::move(joint));
     }
+    for (const LinkPair& pair : member.robot.self_contact)
+      combined.self_contact.push_back({pair.one + first_link, pair.other + first_link});
     for (const std::string& link : member.robot.skin) combined.skin.push_back(prefix + link);
     const auto addGroups = [&](const std::vector<Group>& groups, std::vector<Group>& into) {
       for (Group group : groups) {

@@ -94,6 +94,13 @@ struct Group {
   Place place;
 };
 
+/// Two links, indices into Robot::links, one < other.
+struct LinkPair {
+  int one = -1;
+  int other = -1;
+  bool operator==(const LinkPair&) const = default;
+};
+
 /// Links in file order, the root first found by having no parent.  Joints with coordinates of their own, neither
 /// fixed nor driven by others, are numbered depth-first from the root, children in the order of their joints in the
 /// file: that is the order of q everywhere.
@@ -103,6 +110,7 @@ struct Robot {
   std::vector<Joint> joints;                                       ///< fixed ones too
   int root = 0;                                                    ///< index into links
   std::vector<std::string> skin;                                   ///< links that feel
+  std::vector<LinkPair> self_contact;                              ///< links that touch each other, rising; no others
   std::vector<Group> link_groups;
   std::vector<Group> joint_groups;
   Place place;

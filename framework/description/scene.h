@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +44,7 @@ struct Holder {
   double damping = 15;                                             ///< N s/m
   double rotation_stiffness = 2;                                   ///< N m/rad
   double rotation_damping = 0.02;                                  ///< N m s/rad
+  double until = std::numeric_limits<double>::infinity();          ///< s: then it lets go
 };
 
 /// Of an object that forces move, in its own frame.
@@ -64,9 +67,26 @@ struct Object {
   std::vector<Waypoint> path;                                      ///< of held and moved ones, times rising; empty: its pose
 };
 
+/// Who takes part in a contact: an object, a link or, with neither, every link of the robot.
+struct Party {
+  int object = -1;                                                 ///< index into Scene::objects
+  int link = -1;                                                   ///< index into Robot::links
+  bool operator==(const Party&) const = default;
+};
+
+/// What holds between two parties instead of the usual rule, as far as it is said.
+struct ContactPair {
+  Party one, other;
+  std::optional<double> stiffness, dissipation, friction, rolling;  ///< as in ContactMaterial
+};
+
 struct Scene {
   std::vector<Object> objects;
+  std::vector<ContactPair> pairs;                                  ///< a later one wins over those before it
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);          ///< m/s²
 };
+
+/// Of two parties, each an object or a link, between which `usual` holds where no pair says otherwise.
+ContactMaterial materialOf(const Scene& scene, const Party& one, const Party& other, ContactMaterial usual);
 
 }  // namespace tactus::description

@@ -15,8 +15,9 @@ bool TouchSwitch::update(double force_N, double dt) {
   return true;
 }
 
-ContactMetrics::ContactMetrics(int links, int objects, const std::vector<int>& desired_links)
+ContactMetrics::ContactMetrics(int links, int objects, const std::vector<int>& desired_links, bool touches_itself)
     : objects_(objects),
+      touches_itself_(touches_itself),
       desired_(static_cast<size_t>(links), false),
       pair_force_(static_cast<size_t>(links) * static_cast<size_t>(objects), 0.0),
       switches_(static_cast<size_t>(links)) {
@@ -25,11 +26,16 @@ ContactMetrics::ContactMetrics(int links, int objects, const std::vector<int>& d
 
 void ContactMetrics::update(const std::vector<control::ContactRecord>& records, double dt) {
   std::fill(pair_force_.begin(), pair_force_.end(), 0.0);
+  now_ = Now{};
   for (const control::ContactRecord& record : records) {
+    if (record.isOfSelf()) {
+      now_.self_max_N = std::max(now_.self_max_N, record.force_N);
+      continue;
+    }
     pair_force_[static_cast<size_t>(record.link * objects_ + record.object)] += record.force_N;
   }
+  self_peak_ = std::max(self_peak_, now_.self_max_N);
 
-  now_ = Now{};
   double sum = 0;
   int switched = 0;
   for (size_t link = 0; link < desired_.size(); ++link) {
@@ -88,12 +94,15 @@ std::vector<control::Metric> ContactMetrics::metrics() const {
   const auto ratio = [&](double sum, double count) {
     return touched() ? sum / count : std::numeric_limits<double>::quiet_NaN();
   };
-  return {{"contact_force_mean_N", ratio(force_sum_, static_cast<double>(contacts_))},
+  std::vector<control::Metric> metrics = {
+          {"contact_force_mean_N", ratio(force_sum_, static_cast<double>(contacts_))},
           {"contact_force_max_mean_N", ratio(max_sum_, static_cast<double>(ticks_in_contact_))},
           {"contact_force_peak_N", ratio(peak_, 1)},
           {"undesired_force_peak_N", undesired_peak_},
           {"links_in_contact_mean", ratio(links_sum_, static_cast<double>(ticks_))},
           {"contact_switches_per_s", ratio(static_cast<double>(switches_counted_), time_)}};
+  if (touches_itself_) metrics.push_back({"self_force_peak_N", self_peak_});
+  return metrics;
 }
 
 }  // namespace tactus::runtime

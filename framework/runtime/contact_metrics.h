@@ -40,6 +40,9 @@ class TouchSwitch {
 /// | links_in_contact_mean      | mean over ticks of the number of desired links that TouchSwitch calls on         |
 /// | contact_switches_per_s     | changes of TouchSwitch, on and off, of all desired links, over the time counted  |
 ///
+/// | self_force_peak_N          | largest force of a link on another link, in the whole run; of robots that touch  |
+/// |                            | themselves.  No other figure counts such a touch                                 |
+///
 /// What was never met (no desired touch at all) is NaN.
 class ContactMetrics final : public control::Observer {
  public:
@@ -50,21 +53,24 @@ class ContactMetrics final : public control::Observer {
     double mean_N = 0;                                             ///< over the desired contacts, 0 without any
     double max_N = 0;
     double undesired_max_N = 0;
+    double self_max_N = 0;                                         ///< a record's
   };
 
-  /// `desired_links` are indices into Robot::links.
-  ContactMetrics(int links, int objects, const std::vector<int>& desired_links);
+  /// `desired_links` are indices into Robot::links; `touches_itself`: the robot has links that touch each other.
+  ContactMetrics(int links, int objects, const std::vector<int>& desired_links, bool touches_itself = false);
 
   void observe(const control::ObservedTick& tick) override { update(tick.truth.contacts, tick.controller.period()); }
   void update(const std::vector<control::ContactRecord>& records, double dt);
 
   const Now& now() const { return now_; }
   bool touched() const { return ticks_ > 0; }
+  bool touchesItself() const { return touches_itself_; }
   std::vector<control::Metric> metrics() const;
   void archive(control::Archive& archive);
 
  private:
   int objects_;
+  bool touches_itself_;
   std::vector<bool> desired_;
   std::vector<double> pair_force_;                                 ///< N, link-major
   std::vector<TouchSwitch> switches_;
@@ -78,6 +84,7 @@ class ContactMetrics final : public control::Observer {
   double max_sum_ = 0;
   double peak_ = 0;
   double undesired_peak_ = 0;
+  double self_peak_ = 0;
   double links_sum_ = 0;
 };
 

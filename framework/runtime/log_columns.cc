@@ -107,6 +107,8 @@ void LogColumns::addContacts(const ContactMetrics& contacts) {
   add("contact/mean_N", [now](const control::ObservedTick&) { return now->mean_N; });
   add("contact/max_N", [now](const control::ObservedTick&) { return now->max_N; });
   add("contact/undesired_max_N", [now](const control::ObservedTick&) { return now->undesired_max_N; });
+  if (contacts.touchesItself())
+    add("contact/self_max_N", [now](const control::ObservedTick&) { return now->self_max_N; });
 }
 
 void LogColumns::addController(const control::Controller& controller) {

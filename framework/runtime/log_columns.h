@@ -31,7 +31,7 @@ struct MovingObject {
 ///     sensor/<name>/<port>, or <port>/0, <port>/1, … of a vector of at most 6 numbers; all of it in the set `all`
 ///     object/<name>/{x,y,z,qw,qx,qy,qz}                     of objects that move: m, and a quaternion with w ≥ 0
 ///     fault/<name>                                          of what was asked to go wrong: 1 while it strikes
-///     contact/{contacts,links,mean_N,max_N,undesired_max_N}
+///     contact/{contacts,links,mean_N,max_N,undesired_max_N}, and self_max_N of robots that touch themselves
 ///     controller/{torque_norm,scale,status,fallback,limited}
 ///     controller/rate_limited, controller/late              when the controller declares a torque rate, a deadline
 ///     kkt/{stationarity,primal,complementarity}            when the back end says them

@@ -112,8 +112,10 @@ Fault::Fault(const SensorContext& context)
 }
 
 bool Fault::strikes(const ContactRecord& contact) const {
-  return contact.link >= 0 && contact.link < static_cast<int>(links_.size()) &&
-         links_[static_cast<std::size_t>(contact.link)];
+  const auto isHit = [this](int link) {
+    return link >= 0 && link < static_cast<int>(links_.size()) && links_[static_cast<std::size_t>(link)];
+  };
+  return isHit(contact.link) || isHit(contact.other_link);
 }
 
 void Fault::doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorXd> readings) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/control/sensing_guard.h"
+#include "framework/description/link_shape.h"
 
 namespace tactus::plugins {
 
@@ -72,6 +73,10 @@ void Skin::registerIn(Registry& registry) {
        .description = "Fewer neighbours make no contact.", .lower = 1},
       {.name = "min-force", .type = ValueType::real, .unit = "N", .default_text = "0.01",
        .description = "A weaker sum of neighbours makes no contact.", .lower = 0},
+      {.name = "self-margin", .type = ValueType::real, .unit = "m", .default_text = "0.003",
+       .description = "A contact as near as this to another link that may touch its own is one of the robot with "
+                      "itself.",
+       .lower = 0},
       {.name = "perfect", .type = ValueType::flag, .default_text = "false",
        .description = "The true contacts are felt; taxels are there for the ports alone."},
   };
@@ -91,6 +96,8 @@ Skin::Skin(const SensorContext& context)
       count_per_N_(1),
       min_taxels_(context.values.integer("min-taxels")),
       min_force_(context.values.real("min-force")),
+      near_(context.robot.links.size()),
+      self_margin_(context.values.real("self-margin")),
       perfect_(context.values.flag("perfect")) {
   const ElementValues& values = context.values;
   const std::vector<int> links = context.frames("links");
@@ -106,6 +113,15 @@ Skin::Skin(const SensorContext& context)
     taxels += patches_.back().taxels.count();
   }
   if (taxels == 0) throw ElementError("links", "there is no surface that could carry a taxel");
+
+  const auto addNear = [&](int link, int other) {
+    for (const description::LinkShape& shape : context.robot.links[static_cast<std::size_t>(other)].shapes)
+      near_[static_cast<std::size_t>(link)].push_back({other, description::solidOf(shape)});
+  };
+  for (const description::LinkPair& pair : context.robot.self_contact) {
+    addNear(pair.one, pair.other);
+    addNear(pair.other, pair.one);
+  }
 
   const Layout::Electronics electronics = layout.electronics();
   TaxelResponse::Options options;
@@ -170,15 +186,21 @@ void Skin::press(const Sensed& truth) {
   pressed_N_.setZero();
   bool placed = false;
   for (const ContactRecord& contact : truth.contacts) {
-    const int index = patchOf(contact.link);
-    if (index < 0) continue;
+    if (patchOf(contact.link) < 0 && patchOf(contact.other_link) < 0) continue;
     if (!placed) dynamics::forwardKinematics(model_, truth.q, workspace_);
     placed = true;
-    Patch& patch = patches_[static_cast<std::size_t>(index)];
-    const Eigen::Isometry3d X_WL = dynamics::framePose(model_, workspace_, contact.link);
-    const Eigen::Vector3d point_L = X_WL.linear().transpose() * (contact.point_W - X_WL.translation());
-    patch.taxels.press(point_L, contact.force_N, contact.depth, pressed_N_.segment(patch.first, patch.taxels.count()));
+    pressOn(contact.link, contact);
+    pressOn(contact.other_link, contact);
   }
+}
+
+void Skin::pressOn(int link, const ContactRecord& contact) {
+  const int index = patchOf(link);
+  if (index < 0) return;
+  Patch& patch = patches_[static_cast<std::size_t>(index)];
+  const Eigen::Isometry3d X_WL = dynamics::framePose(model_, workspace_, link);
+  const Eigen::Vector3d point_L = X_WL.linear().transpose() * (contact.point_W - X_WL.translation());
+  patch.taxels.press(point_L, contact.force_N, contact.depth, pressed_N_.segment(patch.first, patch.taxels.count()));
 }
 
 void Skin::read() {
@@ -192,7 +214,8 @@ void Skin::read() {
 
 void Skin::replaceContacts(Sensed& felt) {
   std::erase_if(felt.contacts, [this](const ContactRecord& contact) {
-    return contact.object >= 0 && patchOf(contact.link) >= 0;
+    const bool is_true = contact.object >= 0 || (contact.isOfSelf() && contact.depth > 0);
+    return is_true && (patchOf(contact.link) >= 0 || patchOf(contact.other_link) >= 0);
   });
   if (contacts_.empty()) return;
   dynamics::forwardKinematics(model_, felt.q, workspace_);
@@ -204,8 +227,23 @@ void Skin::replaceContacts(Sensed& felt) {
     record.point_W = X_WL * contact.place.position_L;
     record.normal_W = X_WL.linear() * contact.place.normal_L;
     record.force_N = contact.force_N;
+    record.other_link = touchedAt(link, record.point_W);
     felt.contacts.push_back(record);
   }
+}
+
+int Skin::touchedAt(int link, const Eigen::Vector3d& point_W) const {
+  int touched = -1;
+  double nearest = self_margin_;
+  for (const Solid& solid : near_[static_cast<std::size_t>(link)]) {
+    const Eigen::Isometry3d X_WL = dynamics::framePose(model_, workspace_, solid.link);
+    const Eigen::Vector3d p = solid.shape.pose.inverse() * (X_WL.inverse() * point_W);
+    const double distance = solid.shape.shape->distance(p).distance;
+    if (distance > nearest) continue;
+    nearest = distance;
+    touched = solid.link;
+  }
+  return touched;
 }
 
 }  // namespace tactus::plugins

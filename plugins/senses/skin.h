@@ -4,6 +4,7 @@
 
 #include "framework/control/registry.h"
 #include "framework/dynamics/kinematics.h"
+#include "framework/geometry/compound.h"
 #include "plugins/senses/sampler.h"
 #include "plugins/senses/taxel_patch.h"
 #include "plugins/senses/taxel_response.h"
@@ -18,8 +19,12 @@ namespace tactus::plugins {
 /// where the *felt* joints have them, as a robot would: `<encoders>` stand before the skin in the stack.  In `felt` the
 /// true contacts of all its links vanish, what presses beside the taxels too; those that are read follow after all
 /// others, link by link in the order of the robot.  Of them the robot knows no object (−1), no depth and no friction.
-/// Contacts that another skin read stay: a link may have several patches.  With `perfect` the true contacts stay as they
-/// are.
+/// Contacts that another skin read stay: a link may have several patches.  With `perfect` the true contacts stay as
+/// they are.
+///
+/// Where the robot touches itself, taxels of both links are pressed, which cannot tell by what.  A contact that the
+/// felt joints put within `self-margin` of a link that may touch its own is told as one with that link, the nearest:
+/// what lies between two links that nearly touch is taken for one of them.
 ///
 /// Ports: `force`, the sum of all taxels; `active`, how many are above 0; `taxels`, all of them, link by link.
 class Skin final : public control::Sensor {
@@ -40,7 +45,10 @@ class Skin final : public control::Sensor {
   void doArchive(control::Archive& archive) override;
   void press(const control::Sensed& truth);
   void read();
+  void pressOn(int link, const control::ContactRecord& contact);
   void replaceContacts(control::Sensed& felt);
+  /// The link that touches `link` at this place, −1 = none; joints as in workspace_.
+  int touchedAt(int link, const Eigen::Vector3d& point_W) const;
   /// Index into patches_, −1 = none.
   int patchOf(int link) const;
 
@@ -63,6 +71,12 @@ class Skin final : public control::Sensor {
   };
   std::vector<LinkContact> contacts_;                              // read last
   std::vector<TaxelContact> read_;
+  struct Solid {
+    int link;
+    geometry::PosedShape shape;                                    // link frame
+  };
+  std::vector<std::vector<Solid>> near_;                           // by link: of those that may touch it
+  double self_margin_;
   double count_per_N_;                                             // of what `taxels` tells
   int min_taxels_;
   double min_force_;

@@ -31,6 +31,23 @@ TEST(ExplainCommand, TellsPortsChildrenAndChoices) {
               AllOf(HasSubstr("backend=\"null-space\": "), HasSubstr("projection: choice; one of successive | augmented")));
 }
 
+TEST(ExplainCommand, TellsWhichLinksDoNotTouchEachOther) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "<stack format=\"1\"><robot model=\"lwr_allegro\" self-contact=\"palm index_base index_distal thumb_distal\"/>"
+      "<level priority=\"1\"><posture name=\"p\" joints=\"arm\"/></level><controller backend=\"null-space\"/></stack>";
+  const std::string stack = folder.write("stack.xml", text);
+  const Outcome outcome = tactus({"explain", stack});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("\nself-contact: 5 pairs of links may touch; these do not:\n"
+                                     "  palm and index_base: joint 'index_abduction' joins them\n"));
+  const nlohmann::json json = tactus({"explain", stack, "--json"}).json()["self_contact"];
+  EXPECT_EQ(json["touching"].size(), 5u);
+  EXPECT_EQ(json["left_out"][0]["links"], (nlohmann::json{"palm", "index_base"}));
+  EXPECT_EQ(tactus({"explain", TACTUS_SOURCE_DIR "/examples/explore_table/stack.xml"}).out.find("self-contact:"),
+            std::string::npos);
+}
+
 TEST(ExplainCommand, JsonHoldsTheSame) {
   const nlohmann::json json = tactus({"explain", "contact-force", "--json"}).json()["elements"].at(0);
   EXPECT_EQ(json["kind"], "task");

@@ -24,7 +24,7 @@ const std::string everything = R"(<stack format="1" name="whole">
   <defaults class="stiff"><object stiffness="500"/></defaults>
   <defaults class="rough" base="stiff"><object friction="0.7"/></defaults>
   <plugin name="known"/>
-  <robot model="lwr_4plus"><start q="0.1 0.2 0.3 0.4 0.5 0.6 0.7"/></robot>
+  <robot model="lwr_4plus" self-contact="lwr_6 lwr_2"><start q="0.1 0.2 0.3 0.4 0.5 0.6 0.7"/></robot>
   <scene gravity="0 0 -9">
     <object name="table" pose="1 2 3" jitter="0.01 0 0" stiffness="1000" dissipation="3" friction="0.3" rolling="0.0021">
       <box size="1 1 0.1" pose="0 0 0.25"/></object>
@@ -40,8 +40,10 @@ const std::string everything = R"(<stack format="1" name="whole">
       <heights file="hills.txt" spacing="0.05 0.04" cell="0.01"/>
       <mesh file="wedge.obj" scale="0.00123" cell="0.0065" pose="0 0 0.137"/></object>
     <object name="loose" mobility="held" mass="0.31" inertia="0.001 0.0011 0.0012" centre="0 0 0.014"
-            hold-stiffness="501" hold-damping="16" hold-rotation-stiffness="2.5" hold-rotation-damping="0.03">
+            hold-stiffness="501" hold-damping="16" hold-rotation-stiffness="2.5" hold-rotation-damping="0.03"
+            hold-until="3.3">
       <sphere radius="0.15"/><at time="0.77" by="0 0 0.17"/></object>
+    <pair between="loose table" stiffness="701" dissipation="1.7" friction="0.71" rolling="0.0071"/>
   </scene>
   <faults>
     <torque-loss name="weak" joints="a1 a3" factor="0.41" from="0.161" until="0.871"/>
@@ -80,6 +82,7 @@ const std::vector<Change> changes{
     {"defaults/base", " base=\"stiff\"", ""},
     {"plugin/name", "plugin name=\"known\"", "plugin name=\"unknown\""},
     {"robot/model", "lwr_4plus", "allegro_right"},
+    {"robot/self-contact", "lwr_6 lwr_2", "lwr_6 lwr_1"},
     {"start/q", "0.1 0.2", "0.15 0.2"},
     {"scene/gravity", "0 0 -9", "0 0 -8"},
     {"object/name", "object name=\"table\"", "object name=\"desk\""},
@@ -135,6 +138,12 @@ const std::vector<Change> changes{
     {"object/hold-damping", "\"16\"", "\"17\""},
     {"object/hold-rotation-stiffness", "\"2.5\"", "\"2.6\""},
     {"object/hold-rotation-damping", "\"0.03\"", "\"0.04\""},
+    {"object/hold-until", "3.3", "3.4"},
+    {"pair/between", "loose table", "loose thing"},
+    {"pair/stiffness", "701", "702"},
+    {"pair/dissipation", "1.7\"", "1.8\""},
+    {"pair/friction", "0.71", "0.72"},
+    {"pair/rolling", "0.0071", "0.0072"},
     {"at/time", "\"0.77\"", "\"0.75\""},
     {"at/by", "0 0 0.17", "0 0 0.18"},
     {"torque-loss/name", "weak", "feeble"},
@@ -213,18 +222,26 @@ void write(const dsl::Stack& stack, std::ostream& out) {
   for (const std::string& plugin : stack.plugins) out << "\nplugin " << plugin;
   const description::Scene scene = stack.scene(stack.run.seed);
   for (const description::Object& object : scene.objects) {
-    out << "\n" << object.name << "\n" << object.pose.matrix() << "\n" << object.material.stiffness << " "
-        << object.material.dissipation << " " << object.material.friction << " "
+    out << "\n"
+        << object.name << "\n"
+        << object.pose.matrix() << "\n"
+        << object.material.stiffness << " " << object.material.dissipation << " " << object.material.friction << " "
         << object.material.rolling << "\n"
         << static_cast<int>(object.mobility) << " " << object.mass.mass << " " << object.mass.centre.transpose() << " "
         << object.mass.inertia.diagonal().transpose() << " " << object.holder.stiffness << " " << object.holder.damping
-        << " " << object.holder.rotation_stiffness << " " << object.holder.rotation_damping;
+        << " " << object.holder.rotation_stiffness << " " << object.holder.rotation_damping << " "
+        << object.holder.until;
     for (const description::Waypoint& waypoint : object.path) out << "\n" << waypoint.time << waypoint.pose.matrix();
     for (const description::Primitive& primitive : object.primitives) {
       out << "\n" << primitive.pose.matrix() << "\n";
       write(*primitive.shape, out);
     }
   }
+  for (const description::LinkPair& pair : stack.robot.self_contact) out << "\ntouch " << pair.one << " " << pair.other;
+  for (const description::ContactPair& pair : scene.pairs)
+    out << "\npair " << pair.one.object << pair.one.link << " " << pair.other.object << pair.other.link << " "
+        << pair.stiffness.value_or(-1) << " " << pair.dissipation.value_or(-1) << " " << pair.friction.value_or(-1)
+        << " " << pair.rolling.value_or(-1);
   out << "\n" << stack.gravity.transpose();
   for (const auto& alternative : stack.alternatives) out << "\nalternative " << alternative.row().name;
   out << "\n" << stack.run.duration << " " << stack.run.columns << " " << stack.run.record_rate;

@@ -37,6 +37,16 @@ TEST(Combine, TwoArmsMoveAsEachAlone) {
   EXPECT_EQ(M.topRightCorner(6, 7).cwiseAbs().maxCoeff(), 0);
 }
 
+TEST(Combine, LinksThatTouchEachOtherStillDo) {
+  description::Robot arm;
+  arm.links.resize(3);
+  arm.self_contact = {{0, 2}};
+  const description::Robot two = description::combine("two", {{"a", arm}, {"b", arm}});
+  ASSERT_EQ(two.self_contact.size(), 2u);
+  EXPECT_EQ(two.self_contact[0], (description::LinkPair{1, 3}));
+  EXPECT_EQ(two.self_contact[1], (description::LinkPair{4, 6}));
+}
+
 TEST(Combine, NamesOfMembersDiffer) {
   try {
     description::combine("pair", {{"arm", test_robots::lwr()}, {"arm", test_robots::lwr()}});

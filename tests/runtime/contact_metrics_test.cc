@@ -67,6 +67,30 @@ TEST_F(ContactMetricsTest, RecordsOfOneLinkAndObjectAreSummed) {
   EXPECT_DOUBLE_EQ(value("contact_force_mean_N"), 1.1 / 2);
 }
 
+TEST_F(ContactMetricsTest, TheRobotOnItselfIsNoContactOfTheWorld) {
+  ContactRecord of_self = touch(0, -1, 5);
+  of_self.other_link = 1;
+  ticks(3, {of_self});
+  EXPECT_FALSE(metrics.touched());
+  EXPECT_EQ(metrics.now().self_max_N, 5);
+  ticks(3, {touch(1, 0, 0.5), of_self});
+  EXPECT_EQ(metrics.now().contacts, 1);
+  EXPECT_DOUBLE_EQ(value("contact_force_peak_N"), 0.5);
+  EXPECT_EQ(value("undesired_force_peak_N"), 0);
+  for (const control::Metric& metric : metrics.metrics()) EXPECT_NE(metric.name, "self_force_peak_N") << "it cannot";
+}
+
+TEST_F(ContactMetricsTest, TheLargestForceOnItselfIsAFigureOfARobotThatCan) {
+  metrics = ContactMetrics(3, 2, {0, 1}, true);
+  ContactRecord of_self = touch(0, -1, 5);
+  of_self.other_link = 1;
+  EXPECT_EQ(value("self_force_peak_N"), 0);
+  ticks(1, {of_self});
+  ticks(1, {});
+  EXPECT_EQ(metrics.now().self_max_N, 0);
+  EXPECT_EQ(value("self_force_peak_N"), 5);
+}
+
 TEST_F(ContactMetricsTest, CountingBeginsWithTheFirstDesiredTouch) {
   ticks(100, {});
   ticks(100, {touch(2, 0, 3)});

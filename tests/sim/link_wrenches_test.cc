@@ -144,5 +144,33 @@ TEST(LinkWrenches, OfAFootThatStandsAreTheLoadAboveIt) {
   }
 }
 
+/// A hammer on a slide presses on an anvil that a fixed joint parts from the world's body, or from that of a second
+/// slide.
+TEST(LinkWrenches, OfALinkThatAnotherOneTouchesAreWhatItPresses) {
+  for (const bool anvil_is_box : {false, true}) {
+    description::Robot robot = sim_tests::world();
+    addJoint(robot, "carrier", JointType::prismatic, Vector3d::UnitZ(), 0.2, 1e-4);
+    addJoint(robot, "anvil", JointType::fixed, Vector3d::UnitX(), 0.1, 1e-4);
+    if (anvil_is_box)
+      robot.links.back().shapes = {description::BoxShape{at(0, 0, 0), {0.04, 0.04, 0.04}}};
+    else
+      robot.links.back().shapes = {sim_tests::sphere(0.02)};
+    addJoint(robot, "hammer", JointType::prismatic, Vector3d::UnitZ(), 0.3, 1e-4).parent = 0;
+    robot.links.back().shapes = {sim_tests::sphere(0.02)};
+    robot.self_contact = {{2, 3}};
+    description::Scene scene;
+    scene.gravity.setZero();
+    SimbodyPlant plant(robot, scene, Eigen::Vector2d(0, 0.0405), asking({2}));
+    for (int k = 0; k < 6000; ++k) {
+      const Eigen::VectorXd torque = Eigen::Vector2d(2, -2) - 3 * plant.sense().qd;
+      plant.advance(torque, kTick);
+    }
+    ASSERT_LT(plant.sense().qd.norm(), 1e-6);
+    ASSERT_EQ(plant.sense().contacts.size(), 1u);
+    EXPECT_EQ(plant.sense().contacts[0].link, anvil_is_box ? 3 : 2) << "a box is felt, else the first of the two feels";
+    EXPECT_NEAR(plant.sense().wrenches[0].force_L.z(), 2, 1e-4) << "its joint presses it up, against the hammer";
+  }
+}
+
 }  // namespace
 }  // namespace tactus::sim

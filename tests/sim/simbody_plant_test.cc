@@ -104,6 +104,69 @@ TEST(JointStops, TakeTheImpactAndHoldTheRange) {
   }
 }
 
+/// One hinge without gravity, whose link hits the stop at `speed`; a spring and a damper of natural frequency ω =
+/// √0.05/h and ratio ζ = 0.22/2√0.05 that only push.
+class Stop : public ::testing::Test {
+ protected:
+  Stop() : robot_(sim_tests::world()) {
+    description::Joint& hinge = sim_tests::addJoint(robot_, "hinge", description::JointType::revolute,
+                                                    Eigen::Vector3d::UnitZ(), 1, inertia);
+    hinge.lower = -0.5;
+    hinge.upper = 0.5;
+    scene_.gravity.setZero();
+  }
+  SimbodyPlant atTheMiddle() const { return {robot_, scene_, Eigen::VectorXd::Zero(1)}; }
+  static void strike(SimbodyPlant& plant, double speed) {
+    plant.advance(Eigen::VectorXd::Constant(1, speed * inertia / h), h);
+  }
+  static constexpr double inertia = 1e-3, h = 0.25e-3;
+  description::Robot robot_;
+  description::Scene scene_;
+};
+
+TEST_F(Stop, IsOvershotAsASpringAndADamperAre) {
+  const double omega = std::sqrt(0.05) / h, zeta = 0.22 / (2 * std::sqrt(0.05));
+  const double deepest = std::exp(-zeta / std::sqrt(1 - zeta * zeta) * std::acos(zeta)) / omega;  // per rad/s
+  for (const double speed : {0.1, 1.0, 7.0, 50.0}) {
+    SimbodyPlant plant = atTheMiddle();
+    strike(plant, speed);
+    double overshoot = 0;
+    for (int i = 0; i < static_cast<int>(1.5 / speed / h) && plant.sense().qd[0] > 0; ++i) {
+      plant.advance(Eigen::VectorXd::Zero(1), h);
+      overshoot = std::max(overshoot, plant.sense().q[0] - 0.5);
+    }
+    EXPECT_NEAR(overshoot / speed, deepest, 0.25 * deepest) << speed << " rad/s: within a step's way";
+  }
+}
+
+/// From stop to stop without anything to brake it: each blow takes energy, none gives.
+TEST_F(Stop, TakesEnergyAtEveryBlow) {
+  SimbodyPlant plant = atTheMiddle();
+  strike(plant, 20);
+  double speed = std::abs(plant.sense().qd[0]);
+  int blows = 0;
+  for (int i = 0; i < 20000; ++i) {
+    plant.advance(Eigen::VectorXd::Zero(1), h);
+    if (std::abs(plant.sense().q[0]) > 0.5) continue;              // the spring's energy is not counted: look between
+    const double now = std::abs(plant.sense().qd[0]);
+    ASSERT_LE(now, speed * (1 + 1e-12));
+    if (now < 0.99 * speed) {
+      EXPECT_NEAR(now / speed, 0.35, 0.2) << "rebound";
+      ++blows;
+    }
+    speed = now;
+  }
+  EXPECT_GE(blows, 4);
+}
+
+TEST_F(Stop, YieldsToALoadByLoadOverStiffness) {
+  SimbodyPlant plant = atTheMiddle();
+  const double load = 0.5, stiffness = 0.05 * inertia / (h * h);
+  plant.advance(Eigen::VectorXd::Constant(1, load), 2);
+  EXPECT_NEAR(plant.sense().q[0] - 0.5, load / stiffness, 1e-9);
+  EXPECT_LT(std::abs(plant.sense().qd[0]), 1e-9);
+}
+
 TEST(JointFriction, HoldsAPendulumAside) {
   description::Robot robot = pendulum();
   robot.joints[0].friction = 4;

@@ -54,6 +54,29 @@ TEST_F(ContactsSignal, OneContactALinkIsTheForceWeightedMean) {
   EXPECT_LT((contact.normal_W - expected).norm(), 1e-12);
 }
 
+TEST_F(ContactsSignal, TheRobotOnItselfIsInNoSet) {
+  control::ContactRecord of_self = world.contactOn("index_distal", kDown, 2);
+  of_self.object = -1;
+  of_self.other_link = world.link("thumb_distal");
+  world.sensed.contacts = {of_self};
+  world.feel();
+  EXPECT_TRUE(port<ContactSet>(world, "all").contacts.empty());
+  EXPECT_TRUE(port<control::TouchedPoints>(world, "points").points.empty());
+  EXPECT_EQ(port<MissingSet>(world, "missing").points.size(), 9u) << "the finger still looks for the world";
+  EXPECT_EQ(port<double>(world, "touching"), 0);
+  EXPECT_EQ(port<double>(world, "self"), 1);
+
+  // Beside a touch of the world on the same link, which stays what it is.
+  const control::ContactRecord of_world = world.contactOn("index_distal", kDown, 0.5);
+  world.sensed.contacts = {of_self, of_world};
+  world.feel();
+  ASSERT_EQ(port<ContactSet>(world, "held").contacts.size(), 1u);
+  EXPECT_EQ(port<ContactSet>(world, "held").contacts[0].force_N, 0.5);
+  world.sensed.contacts.clear();
+  world.feel();
+  EXPECT_EQ(port<double>(world, "self"), 0);
+}
+
 TEST_F(ContactsSignal, AChangeMustLastToCount) {
   makeTouch({{"desired", "fingers"}, {"on-force", "0.05"}, {"off-force", "0.02"}, {"hold", "0.005"}});
   const control::ContactRecord touch = world.contactOn("ring_medial", kDown, 0.06);

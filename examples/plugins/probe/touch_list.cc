@@ -28,7 +28,7 @@ TouchList::TouchList(const RecorderContext& context)
 
 void TouchList::observe(const ObservedTick& tick) {
   for (const ContactRecord& contact : tick.truth.contacts) {
-    if (contact.force_N < from_) continue;
+    if (contact.force_N < from_ || contact.isOfSelf()) continue;
     double felt = 0;
     for (const ContactRecord& other : tick.sensed.contacts)
       if (other.link == contact.link && other.object == contact.object) felt += other.force_N;

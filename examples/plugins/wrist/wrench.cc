@@ -34,8 +34,11 @@ void WrenchSensor::doUpdate(const Tick& tick) {
   const Eigen::Vector3d origin = tick.robot.framePose(frame_).translation();
   Wrench felt;
   for (const ContactRecord& contact : tick.sensed.contacts) {
-    if (!beyond_[contact.link]) continue;
-    const Eigen::Vector3d on_robot = -(contact.force_N * contact.normal_W + contact.friction_W);
+    const bool both = contact.isOfSelf() && beyond_[contact.other_link] == beyond_[contact.link];
+    const bool presses_in = contact.isOfSelf() && beyond_[contact.other_link];
+    if (both || (!beyond_[contact.link] && !presses_in)) continue;
+    const double sign = presses_in ? 1 : -1;
+    const Eigen::Vector3d on_robot = sign * (contact.force_N * contact.normal_W + contact.friction_W);
     felt.force_W += on_robot;
     felt.moment_W += (contact.point_W - origin).cross(on_robot);
   }

@@ -52,6 +52,20 @@ TEST_F(WristTest, WhatTouchesBeforeTheSensorIsNotFelt) {
   EXPECT_EQ(column("force_y_N"), 0);
 }
 
+TEST_F(WristTest, WhatTheHandDoesToItselfIsNotFeltButWhatItDoesToTheArmIs) {
+  push({0, 2, 0});
+  bench.sensed.contacts[0].object = -1;
+  bench.sensed.contacts[0].other_link = link("thumb_distal");      // which the palm presses by −2 N
+  tick(0.1);
+  EXPECT_EQ(column("force_y_N"), 0);
+  bench.sensed.contacts[0].other_link = link("lwr_3");
+  tick(0.1);
+  EXPECT_NEAR(column("force_y_N"), 2, 1e-6);
+  std::swap(bench.sensed.contacts[0].link, bench.sensed.contacts[0].other_link);
+  tick(0.1);
+  EXPECT_NEAR(column("force_y_N"), -2, 1e-6) << "seen from the arm";
+}
+
 // K e = f, across the table; down, the wanted 5 N is met by the table's.
 TEST_F(WristTest, AStiffAxisGivesWayByForceOverStiffness) {
   push({6, 0, 5});

@@ -48,8 +48,9 @@ inline description::Robot finger() {
 class SensorOnFinger {
  public:
   SensorOnFinger(const std::string& element, const std::map<std::string, std::string>& attributes,
-                 std::uint64_t seed = 1, std::vector<control::ReadingRow> before = {})
-      : robot_(finger()), model_(robot_) {
+                 std::uint64_t seed = 1, std::vector<control::ReadingRow> before = {},
+                 description::Robot robot = finger())
+      : robot_(std::move(robot)), model_(robot_) {
     plugins::Skin::registerIn(registry_);
     plugins::ForceTorque::registerIn(registry_);
     plugins::Encoders::registerIn(registry_);

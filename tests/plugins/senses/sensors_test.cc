@@ -78,6 +78,62 @@ TEST(Skin, KeepsWhatAnotherSkinReadOnItsLink) {
   EXPECT_EQ(on.told.contacts[0].force_N, 0.9);
 }
 
+/// A finger with a ball on its base, which the far link can touch.
+description::Robot fingerWithBall() {
+  description::Robot robot = finger();
+  robot.links[0].shapes = {description::CapsuleShape{{0.2, 0, 0.03}, {0.2, 0, 0.03}, 0.02}};
+  robot.self_contact = {{0, kFar}};
+  return robot;
+}
+
+TEST(Skin, TellsWhereTheRobotTouchesItself) {
+  SensorOnFinger on("skin", {{"links", "far"}}, 1, {}, fingerWithBall());
+  ContactRecord of_self = touch(on, kFar, 0.2 - 0.12, 2);          // right below the ball
+  of_self.object = -1;
+  of_self.other_link = 0;
+  on.truth.contacts = {of_self, touch(on, kFar, 0.01, 1)};
+  on.tick();
+  EXPECT_NEAR(on.readings()[0], 3, 0.1) << "taxels do not ask what presses them";
+  ASSERT_EQ(on.told.contacts.size(), 2u) << "none of the true ones";
+  EXPECT_EQ(on.told.contacts[0].other_link, -1);
+  EXPECT_NEAR(on.told.contacts[0].force_N, 1, 0.05);
+  EXPECT_EQ(on.told.contacts[1].other_link, 0);
+  EXPECT_NEAR(on.told.contacts[1].force_N, 2, 0.05);
+
+  // Where the felt joints have the finger elsewhere, the robot takes it for the world.
+  on.felt_q = Eigen::Vector2d(0.3, 0);
+  on.tick();
+  ASSERT_EQ(on.told.contacts.size(), 2u);
+  EXPECT_EQ(on.told.contacts[1].other_link, -1);
+}
+
+TEST(Skin, FeelsAlsoTheLinkThatTouchesItsOwn) {
+  description::Robot robot = fingerWithBall();
+  robot.links[0].shapes = {
+      description::BoxShape{Eigen::Isometry3d(Eigen::Translation3d(0.2, 0, 0.03)), {0.04, 0.04, 0.04}}};
+  SensorOnFinger on("skin", {{"links", "far"}}, 1, {}, robot);
+  ContactRecord of_self = touch(on, kFar, 0.08, 2);                // seen from the base
+  of_self.object = -1;
+  of_self.link = 0;
+  of_self.other_link = kFar;
+  on.truth.contacts = {of_self};
+  on.tick();
+  ASSERT_EQ(on.told.contacts.size(), 1u);
+  EXPECT_EQ(on.told.contacts[0].link, kFar);
+  EXPECT_EQ(on.told.contacts[0].other_link, 0);
+}
+
+TEST(Fault, OfALinkStrikesWhereAnotherOneTouchesIt) {
+  SensorOnFinger on("fault", {{"kind", "dropped"}, {"links", "far"}});
+  ContactRecord of_self = touch(on, kNear, 0.08, 2);
+  of_self.object = -1;
+  of_self.other_link = kFar;
+  on.truth.contacts = {of_self, touch(on, kNear, 0.02, 1)};
+  on.tick();
+  ASSERT_EQ(on.told.contacts.size(), 1u);
+  EXPECT_EQ(on.told.contacts[0].force_N, 1);
+}
+
 TEST(Skin, OrdersContactsByLinkAndTaxel) {
   SensorOnFinger on("skin", {{"links", "near far"}});
   on.truth.contacts = {touch(on, kFar, 0.09, 1), touch(on, kFar, 0.01, 2), touch(on, kNear, 0.05, 3)};
