@@ -6,13 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <random>
 
-#include "framework/geometry/cone.h"
-#include "framework/geometry/ellipsoid.h"
-#include "framework/geometry/extrusion.h"
 #include "framework/geometry/revolution.h"
-#include "framework/geometry/torus.h"
 #include "sim/object_path.h"
 #include "sim/simbody_plant.h"
 #include "tests/sim/bodies.h"
@@ -178,62 +173,6 @@ TEST(FreeObject, RollsDownSlopesAboveItsRollingResistance) {
   const double slope = 3 * rho / r;                                // a = (g sin − ρ/r g cos)/(1 + 2/5)
   EXPECT_NEAR(accelerationAt(slope), g * (std::sin(slope) - rho / r * std::cos(slope)) / 1.4, 0.02);
 }
-
-struct Floor {
-  const char* name;
-  std::shared_ptr<const geometry::Shape> shape;
-  double height;                                                   // m, of the lowest drop
-  double spread;                                                   // m, places around the middle
-  double rest = 1e-3;                                              // m/s, of what has come to rest
-};
-std::ostream& operator<<(std::ostream& out, const Floor& floor) { return out << floor.name; }
-
-std::vector<Floor> floors() {
-  const std::vector<Eigen::Vector2d> cup{{0, 0}, {0.05, 0}, {0.05, 0.1}, {0.046, 0.1}, {0.046, 0.006}, {0, 0.006}};
-  const std::vector<Eigen::Vector2d> angle{{-0.1, -0.1}, {0.1, -0.1}, {0.1, -0.05}, {0, -0.05}, {0, 0.1}, {-0.1, 0.1}};
-  return {{"box", std::make_shared<geometry::Box>(Vector3d(0.2, 0.2, 0.04)), 0.07, 0.05},
-          {"cylinder", std::make_shared<geometry::Cylinder>(0.06, 0.1), 0.1, 0.05},
-          {"cone", std::make_shared<geometry::Cone>(0.06, 0.03, 0.1), 0.1, 0.02},
-          // An end that lies in the corner between wall and bottom is nearest to one of them at a time: it trembles.
-          {"cup_and_its_rim", std::make_shared<geometry::Revolution>(cup), 0.13, 0.05, 3e-3},
-          {"ring", std::make_shared<geometry::Torus>(0.03, 0.012, 2 * std::numbers::pi), 0.05, 0.01},
-          {"ellipsoid", std::make_shared<geometry::Ellipsoid>(Vector3d(0.2, 0.1, 0.03)), 0.07, 0.02},
-          {"angle", std::make_shared<geometry::Extrusion>(angle, 0.05), 0.07, 0.08}};
-}
-
-class Dropped : public ::testing::TestWithParam<Floor> {};
-
-/// A pill dropped 20 times comes to rest or falls off.
-TEST_P(Dropped, SettlesOrFallsClear) {
-  std::mt19937_64 random(11);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-  const Floor& floor = GetParam();
-  int settled = 0;
-  for (int trial = 0; trial < 20; ++trial) {
-    Eigen::Isometry3d pose = at(uniform(-floor.spread, floor.spread), uniform(-floor.spread, floor.spread),
-                                floor.height + uniform(0, 0.03));
-    pose.rotate(Eigen::AngleAxisd(uniform(-3, 3), Vector3d::UnitZ()) *
-                Eigen::AngleAxisd(std::numbers::pi / 2 + uniform(-0.8, 0.8), Vector3d::UnitY()));
-    description::Scene drop = scene({sim_tests::object("floor", at(0, 0, 0), floor.shape),
-                                     free("pill", pose, std::make_shared<geometry::Capsule>(0.012, 0.05), 0.1,
-                                          {4e-5, 4e-5, 7e-6})});
-    for (description::Object& object : drop.objects) object.material = {4000, 2, 0.5, 2e-4};
-    SimbodyPlant plant = plantOf(drop);
-    plant.advance(nothing, 6);                                     // it rolls for a while
-    double fastest = 0;
-    for (int i = 0; i < 100; ++i) {
-      plant.advance(nothing, 1e-3);
-      fastest = std::max(fastest, speedOf(plant.objects()[1], 0.03));
-    }
-    if (plant.objects()[1].pose.translation().z() < -0.2) continue;
-    EXPECT_LT(fastest, floor.rest) << "m/s, drop " << trial << " at " << plant.objects()[1].pose.translation().transpose();
-    ++settled;
-  }
-  EXPECT_GT(settled, 0) << "all fell off";
-}
-
-INSTANTIATE_TEST_SUITE_P(On, Dropped, ::testing::ValuesIn(floors()),
-                         [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Objects, StackedOneOnTheOtherStayThere) {
   description::Object upper = brick(at(0, 0, 0.06));
