@@ -27,7 +27,7 @@ bool findInteriorPoint(const geometry::Shape& shape, const Eigen::Vector3d& a, c
     t = F_low > 0 && F_high < 0 ? (low * F_high - high * F_low) / (F_high - F_low) : 0.5 * (low + high);
     nearest = shape.distance(a + t * axis);
     const double depth = radius - nearest.distance;
-    const double slope = -nearest.gradient.dot(axis);
+    const double slope = -nearest.steepness * nearest.gradient.dot(axis);
     if (depth <= 0) {
       const double end = slope > 0 ? high : low;
       if (depth + slope * (end - t) <= 0) return false;            // concave: the tangent bounds δ from above
@@ -70,14 +70,16 @@ struct Extrema {
 
 void findExtrema(const geometry::Shape& shape, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
                  Extrema& extrema) {
-  constexpr int samples = 17;
+  constexpr int samples = 65;
   constexpr double spacing = 1.0 / (samples - 1);
   const Eigen::Vector3d axis = b - a;
-  double f[samples];
+  const double stride = spacing * axis.norm();
+  double f[samples] = {};
   for (int i = 0; i < samples; ++i) {
     const double t = i * spacing;
-    const double depth = std::max(0.0, radius - shape.distance(a + t * axis).distance);
-    f[i] = 4 * t * (1 - t) * depth * depth;
+    const double depth = radius - shape.distance(a + t * axis).distance;
+    if (depth > 0) f[i] = 4 * t * (1 - t) * depth * depth;
+    else i += static_cast<int>(std::min(-depth / stride, 1.0 * samples));  // nothing touches before
   }
   int peaks[samples / 2];
   int count = 0;
@@ -94,7 +96,7 @@ void findExtrema(const geometry::Shape& shape, const Eigen::Vector3d& a, const E
     for (int k = 0; k < 40 && high - low > 1e-9; ++k) {
       const double t = 0.5 * (low + high);
       const geometry::SignedDistance nearest = shape.distance(a + t * axis);
-      const double depth = radius - nearest.distance, slope = -nearest.gradient.dot(axis);
+      const double depth = radius - nearest.distance, slope = -nearest.steepness * nearest.gradient.dot(axis);
       const double F = depth > 0 ? (1 - 2 * t) * depth + 2 * t * (1 - t) * slope : slope;
       ((F > 0) != rising ? low : high) = t;
     }
@@ -334,8 +336,8 @@ void ContactForce::measure(Point& point, int pair, const BodyMotion& of_feature,
   const double share = features_[pairs_[pair].feature].feeler.share * exposure(pairs_[pair].collider, point.surface_W);
   point.stiffness = point.weight * share * material.stiffness;
   const double depth_rate = point.velocity_W.dot(point.normal_W);
-  point.normal_N = std::clamp(point.stiffness * point.depth * (1 + material.dissipation * depth_rate), 0.0,
-                              options_.force_limit);
+  point.normal_N = std::clamp(point.stiffness * point.depth * point.nearest.steepness *
+                                  (1 + material.dissipation * depth_rate), 0.0, options_.force_limit);
 }
 
 void ContactForce::relieve() {
@@ -349,6 +351,16 @@ void ContactForce::relieve() {
       if (pass.between[side] >= 0)
         points_[pass.between[side]].relief_N += pass.normal_N * (sum > 0 ? above[1 - side] / sum : 0.5);
   }
+}
+
+/// What a bristle of this stiffness answers, at most `limit`; its bend is cut to what the limit allows.
+Eigen::Vector3d ContactForce::bent(double stiffness, const Eigen::Vector3d& rate, double limit,
+                                   Eigen::Vector3d& bend) const {
+  const double elastic = stiffness * bend.norm();
+  if (elastic > limit) bend *= limit / elastic;
+  const Eigen::Vector3d answer = stiffness * (bend + options_.bristle_relaxation * rate);
+  const double asked = answer.norm();
+  return asked > limit ? Eigen::Vector3d(limit / asked * answer) : answer;
 }
 
 void ContactForce::press(const Point& point, int pair, const BodyMotion& of_feature, const BodyMotion& of_collider,
@@ -368,35 +380,30 @@ void ContactForce::press(const Point& point, int pair, const BodyMotion& of_feat
     if (point.slot >= 2) bristle.t = point.t;
     const double pressing_N = std::max(0.0, point.normal_N - point.relief_N);
     const double part = point.normal_N > 0 ? pressing_N / point.normal_N : 1;
+    const double stiffness = part * options_.bristle_stiffness_ratio * point.stiffness;
+    // What is new of the contact is not bent yet: it takes no part of the force.
+    const double kept = stiffness > bristle.stiffness ? bristle.stiffness / stiffness : 1;
+    bristle.stiffness = stiffness;
+
     const Eigen::Vector3d slip_W = point.velocity_W - point.velocity_W.dot(point.normal_W) * point.normal_W;
-    const double friction_N = material.friction * point.normal_N;
-    const double bristle_stiffness = options_.bristle_stiffness_ratio * point.stiffness;
+    const double friction_N = material.friction * pressing_N;
     Eigen::Vector3d& bend_W = bristle.bend_W;
+    bend_W *= kept;
     bend_W += h * (slip_W + of_collider.angular_W.cross(bend_W));
     bend_W -= bend_W.dot(point.normal_W) * point.normal_W;         // the normal turns as the point moves
-    const double elastic_N = bristle_stiffness * bend_W.norm();
-    if (elastic_N > friction_N) bend_W *= friction_N / elastic_N;
-    Eigen::Vector3d friction_W = bristle_stiffness * (bend_W + options_.bristle_relaxation * slip_W);
-    const double asked_N = friction_W.norm();
-    if (asked_N > friction_N) friction_W *= friction_N / asked_N;
-    friction_W *= part;
+    const Eigen::Vector3d friction_W = bent(stiffness, slip_W, friction_N, bend_W);
     force_W += friction_W;
     touch.friction_force_W += friction_W;
-    elastic_energy_ += 0.5 * part * bristle_stiffness * bend_W.squaredNorm();
+    elastic_energy_ += 0.5 * stiffness * bend_W.squaredNorm();
 
-    if (material.rolling > 0 && feature.feeler.radius > 0) {
-      const double rolling_Nm = material.rolling * point.normal_N;
-      const double twist_stiffness = bristle_stiffness * feature.feeler.radius * feature.feeler.radius;
+    const double radius = feature.feeler.radius;
+    if (material.rolling > 0 && radius > 0) {
       const Eigen::Vector3d turning_W = of_feature.angular_W - of_collider.angular_W;
       Eigen::Vector3d& twist_W = bristle.twist_W;
+      twist_W *= kept;
       twist_W += h * (turning_W + of_collider.angular_W.cross(twist_W));
-      const double elastic_Nm = twist_stiffness * twist_W.norm();
-      if (elastic_Nm > rolling_Nm) twist_W *= rolling_Nm / elastic_Nm;
-      torque_W = twist_stiffness * (twist_W + options_.bristle_relaxation * turning_W);
-      const double asked_Nm = torque_W.norm();
-      if (asked_Nm > rolling_Nm) torque_W *= rolling_Nm / asked_Nm;
-      torque_W *= part;
-      elastic_energy_ += 0.5 * part * twist_stiffness * twist_W.squaredNorm();
+      torque_W = bent(stiffness * radius * radius, turning_W, material.rolling * pressing_N, twist_W);
+      elastic_energy_ += 0.5 * stiffness * radius * radius * twist_W.squaredNorm();
     }
     next_bristles_[at] = bristle;
   }

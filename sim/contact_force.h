@@ -46,7 +46,7 @@ struct BodyWrench {
 ///
 /// Of a shape that is not convex a round feature (r > 0) touches every piece (see geometry::Piece) in this way: both
 /// sides of a hollow, the near and the far side of a ring.  A piece that is not convex itself has several maxima along
-/// the axis, across the rim of a cup for one: up to three, the greatest of those between 17 samples.  Its energy is the
+/// the axis, across the rim of a cup for one: up to three, the greatest of those among 65 samples.  Its energy is the
 /// sum over maxima less that over the minima between them, so that a maximum comes and goes without a jump.
 ///
 /// What is taken off, at minima and where pieces have something in common, is a *pass* between two points.  It is
@@ -54,11 +54,13 @@ struct BodyWrench {
 /// force N is taken off what presses its two neighbours' bristles, in proportion to how little each stands out above it:
 /// N (E_j − E)/(E_i + E_j − 2E) off i.  So a point that is about to vanish in a pass bears none, and no bristle jumps.
 ///
-/// **Normal** (Hunt and Crossley, 1975).  N = w β k δ (1 + c δ̇), clamped to [0, force_limit]; δ̇ is that of both bodies.
+/// **Normal** (Hunt and Crossley, 1975).  N = w β k δ |∇d| (1 + c δ̇), clamped to [0, force_limit]; δ̇ is that of both
+/// bodies, and |∇d| = 1 but where distances are interpolated (SignedDistance::steepness).
 ///
 /// **Friction** (elastic-plastic bristle; Dupont et al., IEEE TAC 2002).  Each point bends a tangential bristle z by
 /// its slip, ż = v_t, |σ₀ z| ≤ μN, and feels −(σ₀ z + σ₁ v_t), again at most μN.  A loaded bristle keeps its bend, so
-/// a held body does not creep; it turns with the body of the shape.  The bends are the force's own state: `evaluate`
+/// a held body does not creep; it turns with the body of the shape.  Where its stiffness grows (σ₀ is in proportion to β w),
+/// what is new is not bent: the force stays, and the energy does not grow.  The bends are the force's own state: `evaluate`
 /// proposes them, `commit` keeps them.
 ///
 /// **Rolling** and spinning of a round feature (radius r > 0) twist a bristle by the angle that the bodies turn against
@@ -110,6 +112,7 @@ class ContactForce {
   struct Bristle {
     Eigen::Vector3d bend_W = Eigen::Vector3d::Zero();              // m
     Eigen::Vector3d twist_W = Eigen::Vector3d::Zero();             // rad
+    double stiffness = 0;                                          // N/m
     double t = std::nan("");                                       // of an interior point; NaN: none stands there
   };
   /// Where a collider is and how it moves, in this evaluation.
@@ -154,6 +157,7 @@ class ContactForce {
   void relieve();
   void press(const Point& point, int pair, const BodyMotion& of_feature, const BodyMotion& of_collider, double h,
              Touch& touch);
+  Eigen::Vector3d bent(double stiffness, const Eigen::Vector3d& rate, double limit, Eigen::Vector3d& bend) const;
   double exposure(int collider, const Eigen::Vector3d& surface_point_W) const;
   const BodyMotion& motionOf(int body, const std::vector<BodyMotion>& bodies) const;
 

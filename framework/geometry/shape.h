@@ -13,6 +13,8 @@ namespace tactus::geometry {
 struct SignedDistance {
   double distance = 0;                                             ///< m, negative inside
   Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();             ///< unit, outward normal at the nearest surface point
+  /// How fast the distance, as it is told, grows along it: 1 where it is exact, less where hollows are rounded.
+  double steepness = 1;
 };
 
 /// A stretch of a shape's surface with which it feels for others: the points within `radius` of the segment from–to.

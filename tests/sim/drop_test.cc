@@ -31,6 +31,9 @@ using sim_tests::at;
 constexpr double pill_radius = 0.012, pill_length = 0.05;
 constexpr double reach = pill_radius + pill_length / 2;
 constexpr double still = 1e-3;                                     // m/s
+// s/m.  Hunt and Crossley's loss fades with the depth, so that what rocks on a nearly flat top does so for long: with 2 s/m,
+// one of 20 on the ellipsoid takes 1.3 to 1.6 s.
+constexpr double dissipation = 4;
 const Eigen::VectorXd nothing;
 
 struct Floor {
@@ -136,7 +139,7 @@ TEST_P(Dropped, SettlesOrFallsClear) {
     pill.mass = {0.1, Vector3d::Zero(), Vector3d(4e-5, 4e-5, 7e-6).asDiagonal()};
     description::Scene drop;
     drop.objects = {below, pill};
-    for (description::Object& object : drop.objects) object.material = {4000, 5, 0.5, 2e-4};
+    for (description::Object& object : drop.objects) object.material = {4000, dissipation, 0.5, 2e-4};
     SimbodyPlant plant(sim_tests::world(), drop, nothing);
 
     for (double stays_since = 0;;) {
