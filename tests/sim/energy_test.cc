@@ -167,6 +167,31 @@ TEST_P(Energy, NeverGrows) {
   }
 }
 
+/// Without weight: what the pill loses its partner gets, about any point.
+TEST_P(Energy, AndMomentumPassesFromOneToTheOther) {
+  if (std::isinf(GetParam().shape->boundingRadius())) return;
+  World world(GetParam().shape, true, {2000, 2, 0.5, 2e-4}, {{-0.025, 0, 0}, {0.025, 0, 0}, 0.012});
+  world.gravity.setZero();
+  world.bodies[0].motion.p_WB = {0.3 * GetParam().spread, 0.01, GetParam().height};
+  world.bodies[0].motion.linear_W = {0.1, 0.05, -1};
+  world.bodies[0].motion.angular_W = {3, -2, 5};
+  const auto momentum = [&] {
+    Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+    for (const Body& body : world.bodies) {
+      const Eigen::Matrix3d& R = body.motion.R_WB;
+      sum.head<3>() += body.mass * body.motion.linear_W;
+      sum.tail<3>() += R * body.inertia.asDiagonal() * R.transpose() * body.motion.angular_W +
+                       body.motion.p_WB.cross(body.mass * body.motion.linear_W);
+    }
+    return sum;
+  };
+  const Eigen::Matrix<double, 6, 1> before = momentum();
+  for (int i = 0; i < 1000; ++i) world.step(step);
+  EXPECT_GT(world.bodies[1].motion.linear_W.norm(), 0.01) << "they met";
+  EXPECT_LT((momentum() - before).head<3>().norm(), 1e-12);
+  EXPECT_LT((momentum() - before).tail<3>().norm(), 1e-10);
+}
+
 INSTANTIATE_TEST_SUITE_P(On, Energy, ::testing::ValuesIn(cases()),
                          [](const auto& info) { return std::string(info.param.name); });
 
