@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <memory>
 #include <vector>
 
 #include "framework/control/archive.h"
@@ -45,15 +44,24 @@ struct BodyWrench {
 /// weight w = 4t(1−t), so that it fades into the ends, and stands where its elastic energy ½ k w δ² is greatest:
 /// this t is unique (w δ² is log-concave, as d is convex) and continuous in the pose, and by the envelope theorem
 /// the normal force k w δ at fixed t is the gradient of that energy, so that elastic contact conserves energy.
-/// Of a shape that is not convex the energy has several maxima, across the rim of a cup for one: up to three are found
-/// among 17 samples, the greatest first, and each but the greatest counts as far as it stands out: by the smoothstep of
-/// (E − E_saddle)/0.2 E, so that it comes and goes without a jump.
 ///
-/// **Normal** (Hunt and Crossley, 1975).  N = w β k δ (1 + c δ̇), clamped to [0, force_limit]; δ̇ is that of both bodies.
+/// Of a shape that is not convex a round feature (r > 0) touches every piece (see geometry::Piece) in this way: both
+/// sides of a hollow, the near and the far side of a ring.  A piece that is not convex itself has several maxima along
+/// the axis, across the rim of a cup for one: up to three, the greatest of those among 65 samples.  Its energy is the
+/// sum over maxima less that over the minima between them, so that a maximum comes and goes without a jump.
+///
+/// What is taken off, at minima and where pieces have something in common, is a *pass* between two points.  It is
+/// elastic contact like any other with its sign turned: −∇E is the normal force.  A pass bears no friction; its normal
+/// force N is taken off what presses its two neighbours' bristles, in proportion to how little each stands out above it:
+/// N (E_j − E)/(E_i + E_j − 2E) off i.  So a point that is about to vanish in a pass bears none, and no bristle jumps.
+///
+/// **Normal** (Hunt and Crossley, 1975).  N = w β k δ |∇d| (1 + c δ̇), clamped to [0, force_limit]; δ̇ is that of both
+/// bodies, and |∇d| = 1 but where distances are interpolated (SignedDistance::steepness).
 ///
 /// **Friction** (elastic-plastic bristle; Dupont et al., IEEE TAC 2002).  Each point bends a tangential bristle z by
 /// its slip, ż = v_t, |σ₀ z| ≤ μN, and feels −(σ₀ z + σ₁ v_t), again at most μN.  A loaded bristle keeps its bend, so
-/// a held body does not creep; it turns with the body of the shape.  The bends are the force's own state: `evaluate`
+/// a held body does not creep; it turns with the body of the shape.  Where its stiffness grows (σ₀ is in proportion to β w),
+/// what is new is not bent: the force stays, and the energy does not grow.  The bends are the force's own state: `evaluate`
 /// proposes them, `commit` keeps them.
 ///
 /// **Rolling** and spinning of a round feature (radius r > 0) twist a bristle by the angle that the bodies turn against
@@ -84,15 +92,16 @@ class ContactForce {
 
   /// By body, of the last evaluation; zero for a body that touches nothing.
   const std::vector<BodyWrench>& wrenches() const { return wrenches_; }
+  /// J, of the last evaluation: in springs, Σ ± ½ β k w δ², and bristles, Σ ½ σ₀ z² + Σ ½ κ φ².
+  double elasticEnergy() const { return elastic_energy_; }
   /// One record per pair of a link and something else that touched in the last evaluation; `records` is overwritten.
   void read(std::vector<control::ContactRecord>& records) const;
   /// The most records that there can be.
   int capacity() const { return static_cast<int>(pairs_.size()); }
 
  private:
-  static constexpr int most_interior = 3;
-  static constexpr int points_per_pair = 2 + most_interior;        // from, to, interior ones
-  using Bristles = Eigen::Matrix<double, 3, points_per_pair>;      // bends (m), world axes, one column a point
+  static constexpr int most_interior = 3;                          // maxima along the axis
+  static constexpr int slots = 2 + most_interior;                  // of bristles, a piece: from, to, interior ones
 
   struct Touch {
     int pair;
@@ -103,21 +112,17 @@ class ContactForce {
     Eigen::Vector3d deepest_normal_W = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal_force_W = Eigen::Vector3d::Zero();      // Σ, of the feature on the collider
     Eigen::Vector3d friction_force_W = Eigen::Vector3d::Zero();    // Σ, of the feature on the collider
-    Bristles bristles = Bristles::Zero();
-    Bristles twists = Bristles::Zero();                            // rad
-    /// t of interior points; NaN where there is none
-    Eigen::Matrix<double, most_interior, 1> places = Eigen::Matrix<double, most_interior, 1>::Constant(std::nan(""));
   };
-  /// What is committed of a pair, for the archive.
-  struct Bent {
-    int pair = 0;
-    Bristles bristles, twists;
-    Eigen::Matrix<double, most_interior, 1> places;
+  struct Bristle {
+    Eigen::Vector3d bend_W = Eigen::Vector3d::Zero();              // m
+    Eigen::Vector3d twist_W = Eigen::Vector3d::Zero();             // rad
+    double stiffness = 0;                                          // N/m
+    double t = std::nan("");                                       // of an interior point; NaN: none stands there
     void archive(control::Archive& archive) {
-      archive("pair", pair);
-      archive("bristles", bristles);
-      archive("twists", twists);
-      archive("places", places);
+      archive("bend", bend_W);
+      archive("twist", twist_W);
+      archive("stiffness", stiffness);
+      archive("t", t);
     }
   };
   /// Where a collider is and how it moves, in this evaluation.
@@ -125,17 +130,45 @@ class ContactForce {
     Eigen::Matrix3d R_WP;
     Eigen::Vector3d p_WP;
   };
-  /// One contact point of a pair, in the shape's frame.
-  struct Point;
+  /// A piece of a collider; `shape` is the collider's own where that is one piece.
+  using Pieces = std::vector<geometry::Piece>;
+  /// One contact point of the pair at hand.
+  struct Point {
+    int piece;
+    int slot;                                                      // −1 of a pass
+    double sign;
+    double weight;
+    double t;
+    double depth;
+    Eigen::Vector3d p_P;                                           // on the feature's axis, in the shape's frame
+    geometry::SignedDistance nearest;
+    int between[2] = {-1, -1};                                     // of a pass: two points, −1 where one is not there
+    // What follows from the motion:
+    Eigen::Vector3d surface_W = Eigen::Vector3d::Zero(), normal_W = surface_W, velocity_W = surface_W;
+    double stiffness = 0, normal_N = 0;
+    double relief_N = 0;                                           // that passes take off
+    double height() const { return weight * depth * depth; }
+  };
+  /// A feature's axis in the shape's frame.
+  struct Axis {
+    Eigen::Vector3d a, b;
+    double radius;
+    bool ends;
+  };
 
   void clear();
   void pose(const std::vector<BodyMotion>& bodies);
+  const Pieces& piecesFor(const SurfacePair& pair) const;
   void touchPair(int pair, const BodyMotion& of_feature, const BodyMotion& of_collider, double h);
-  int findInterior(const geometry::Shape& shape, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
-                   double depth_a, double depth_b, Point* points) const;
-  void assignSlots(int pair, int count, const Point* points, int* slots) const;
-  void press(const Point& point, int pair, const BodyMotion& of_feature, const BodyMotion& of_collider, double h, int slot,
+  void findPoints(int pair, int piece, const Axis& axis);
+  void findInterior(const geometry::Piece& piece, int number, const Axis& axis, double depth_a, double depth_b);
+  void assignSlots(int pair, int piece, int first_point);
+  void findNeighbours(int pair);
+  void measure(Point& point, int pair, const BodyMotion& of_feature, const BodyMotion& of_collider) const;
+  void relieve();
+  void press(const Point& point, int pair, const BodyMotion& of_feature, const BodyMotion& of_collider, double h,
              Touch& touch);
+  Eigen::Vector3d bent(double stiffness, const Eigen::Vector3d& rate, double limit, Eigen::Vector3d& bend) const;
   double exposure(int collider, const Eigen::Vector3d& surface_point_W) const;
   const BodyMotion& motionOf(int body, const std::vector<BodyMotion>& bodies) const;
 
@@ -145,10 +178,13 @@ class ContactForce {
   std::vector<SurfacePair> pairs_;
   std::vector<std::vector<int>> burying_;                          // by collider: those of its body that may lie over it
   std::vector<Posed> posed_;                                       // by collider
-  std::vector<Bristles> bristles_, twists_;                        // committed, by pair
-  std::vector<Eigen::Matrix<double, most_interior, 1>> places_;    // committed, by pair
-  std::vector<int> bent_;                                          // pairs whose committed bristles are not zero
+  std::vector<Pieces> wholes_, pieces_;                            // by collider: itself alone; what it consists of
+  std::vector<int> first_bristle_;                                 // by pair, and one more: the end
+  std::vector<Bristle> bristles_, next_bristles_;                  // committed; of the last evaluation where it touched
+  std::vector<int> bent_;                                          // pairs whose committed bristles are not straight
+  std::vector<Point> points_;                                      // of the pair at hand
   std::vector<Touch> touches_;                                     // of the last evaluation
+  double elastic_energy_ = 0;
   std::vector<BodyWrench> wrenches_;                               // by body
 };
 

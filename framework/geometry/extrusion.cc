@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/geometry/convex_parts.h"
 #include "framework/geometry/lengths.h"
 
 namespace tactus::geometry {
@@ -19,6 +20,26 @@ double farthestCorner(const Outline& outline, double length) {
   for (const Vector2d& corner : outline.corners()) farthest = std::max(farthest, corner.norm());
   return std::hypot(farthest, 0.5 * positive("the length of an extrusion", length));
 }
+
+/// Over a convex part of the outline, or a cut.
+class Prism final : public Shape {
+ public:
+  Prism(ConvexSet base, double length, std::shared_ptr<const Shape> whole)
+      : Shape(whole->boundingRadius(), true), base_(std::move(base)), length_(length), whole_(std::move(whole)) {}
+
+ private:
+  SignedDistance doDistance(const Vector3d& p) const override {
+    const Vector2d aside = base_.offset(p.head<2>());
+    const Vector3d offset(aside.x(), aside.y(), std::copysign(std::max(0.0, std::abs(p.z()) - 0.5 * length_), p.z()));
+    const double distance = offset.norm();
+    if (distance == 0) return whole_->distance(p);
+    return {distance, offset / distance};
+  }
+
+  ConvexSet base_;
+  double length_;
+  std::shared_ptr<const Shape> whole_;
+};
 
 }  // namespace
 
@@ -55,6 +76,17 @@ std::optional<Vector3d> Extrusion::doSupport(const Vector3d& n) const {
     });
   }
   return Vector3d(farthest.x(), farthest.y(), z);
+}
+
+std::vector<Piece> Extrusion::doPieces() const {
+  if (isConvex()) return {};
+  const auto whole = std::make_shared<Extrusion>(*this);
+  const ConvexParts parts = convexParts(outline_.corners());
+  std::vector<Piece> pieces;
+  for (const ConvexSet& part : parts.parts) pieces.push_back({std::make_shared<Prism>(part, length_, whole)});
+  for (const auto& [diagonal, between] : parts.cuts)
+    pieces.push_back({std::make_shared<Prism>(diagonal, length_, whole), -1, between});
+  return pieces;
 }
 
 }  // namespace tactus::geometry

@@ -127,8 +127,8 @@ Mesh::Mesh(Parts parts)
 SignedDistance Mesh::doDistance(const Vector3d& p) const {
   const DistanceGrid::Sample here = sample(grids_, 0, search_, p);
   const double steepness = here.gradient.norm();
-  if (steepness < 1e-9) return {here.value, Vector3d::UnitZ()};    // the top of a rounded ridge
-  return {here.value, here.gradient / steepness};
+  if (steepness < 1e-9) return {here.value, Vector3d::UnitZ(), 0};  // the top of a rounded ridge
+  return {here.value, here.gradient / steepness, steepness};
 }
 
 std::optional<Vector3d> Mesh::doSupport(const Vector3d& n) const {

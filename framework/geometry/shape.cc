@@ -40,4 +40,6 @@ std::vector<Feeler> Shape::doFeelers() const {
   return feelers;
 }
 
+std::vector<Piece> Shape::doPieces() const { return {}; }
+
 }  // namespace tactus::geometry

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,6 +13,8 @@ namespace tactus::geometry {
 struct SignedDistance {
   double distance = 0;                                             ///< m, negative inside
   Eigen::Vector3d gradient = Eigen::Vector3d::UnitZ();             ///< unit, outward normal at the nearest surface point
+  /// How fast the distance, as it is told, grows along it: 1 where it is exact, less where hollows are rounded.
+  double steepness = 1;
 };
 
 /// A stretch of a shape's surface with which it feels for others: the points within `radius` of the segment from–to.
@@ -22,6 +26,8 @@ struct Feeler {
   bool ends = true;                                                ///< false: its ends are others' (edges of a box)
   double share = 1;                                                ///< of the stiffness, where several touch as one
 };
+
+struct Piece;
 
 /// A solid in a frame of its own, told by the signed distance to its surface: Euclidean outside and inside, so that
 /// p − distance · gradient is the nearest point of the surface.  Where several are equally near (a box's inner
@@ -40,6 +46,9 @@ class Shape {
 
   /// With what it touches where it moves; none of a shape without end.
   std::vector<Feeler> feelers() const { return doFeelers(); }
+
+  /// The pieces in which a ball touches it apart, in a hollow on each side; none: it is one piece.
+  std::vector<Piece> pieces() const { return doPieces(); }
 
   /// Radius of a sphere about the shape's origin that holds all of it, m; infinite for one without end.
   double boundingRadius() const { return bounding_radius_; }
@@ -60,10 +69,31 @@ class Shape {
   /// As it stands: up to 120 points of the surface with an eighth of the stiffness each, of a convex shape those
   /// farthest in directions spread evenly over the sphere, of another those nearest to points around it.
   virtual std::vector<Feeler> doFeelers() const;
+  virtual std::vector<Piece> doPieces() const;
 
   double bounding_radius_;
   bool convex_;
   double error_;
+};
+
+/// A piece of a shape that is not convex, or what two of its pieces have in common.
+///
+/// Of a ball of radius r about p, let φ(d) be the energy of a spring that is bent by r − d.  The nearest point alone
+/// gives φ(distance(p)), whose slope jumps where two sides of a hollow are equally near.  Instead
+///
+///     E(p) = Σ sign · φ(distance of the piece to p)
+///
+/// over the convex pieces (sign +1) and what neighbours have in common (sign −1).  Where two convex pieces make up a
+/// convex one, their common border is as far as the farther of them, and E is φ of the nearer one, as if there were no
+/// cut (distances of convex sets A, B with A ∪ B convex keep d(A ∪ B) = min, d(A ∩ B) = max); in a hollow both sides
+/// count, and the common border only as far as the ball reaches into the corner itself.  Each distance to a convex set is
+/// once differentiable outside, so E is, and −∇E is a force that is continuous and keeps energy.
+///
+/// Outside the piece its distance is the one to the piece; inside, that to the surface of the whole shape.
+struct Piece {
+  std::shared_ptr<const Shape> shape;                              ///< in the frame of the whole
+  int sign = 1;
+  std::array<int, 2> between = {-1, -1};                           ///< of what is in common: these two pieces
 };
 
 }  // namespace tactus::geometry

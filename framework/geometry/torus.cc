@@ -31,6 +31,24 @@ double boundingRadius(double radius, double tube_radius, double angle) {
   return radius + tube_radius;
 }
 
+/// The side of a ring that lies across the axis from a point.
+class FarSide final : public Shape {
+ public:
+  explicit FarSide(std::shared_ptr<const Torus> ring) : Shape(ring->boundingRadius(), false), ring_(std::move(ring)) {}
+
+ private:
+  SignedDistance doDistance(const Vector3d& p) const override {
+    const double rho = std::sqrt(p.x() * p.x() + p.y() * p.y());
+    const Vector3d outwards = rho > 0 ? Vector3d(-p.x() / rho, -p.y() / rho, 0) : Vector3d(-1, 0, 0);
+    const Vector3d offset = p - ring_->radius() * outwards;
+    const double length = offset.norm();
+    if (length <= ring_->tubeRadius()) return ring_->distance(p);
+    return {length - ring_->tubeRadius(), offset / length};
+  }
+
+  std::shared_ptr<const Torus> ring_;
+};
+
 }  // namespace
 
 Torus::Torus(double radius, double tube_radius, double angle)
@@ -57,6 +75,12 @@ SignedDistance Torus::doDistance(const Vector3d& p) const {
 std::optional<Vector3d> Torus::doSupport(const Vector3d& n) const {
   const bool flat = n.head<2>().norm() < level;
   return Vector3d(onArc(flat ? 1 : n.x(), flat ? 0 : n.y()) + tube_radius_ * n);
+}
+
+std::vector<Piece> Torus::doPieces() const {
+  if (!isRing(angle_)) return {};
+  const auto ring = std::make_shared<Torus>(*this);
+  return {{ring}, {std::make_shared<FarSide>(ring)}};
 }
 
 }  // namespace tactus::geometry

@@ -87,6 +87,7 @@ void ContactMetrics::archive(control::Archive& archive) {
   archive("max-sum", max_sum_);
   archive("peak", peak_);
   archive("undesired-peak", undesired_peak_);
+  archive("self-peak", self_peak_);
   archive("links-sum", links_sum_);
 }
 
