@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 
+#include "framework/geometry/revolution.h"
 #include "tests/sim/bodies.h"
 #include "tests/sim/count_allocations.h"
 
@@ -294,7 +295,9 @@ TEST(ContactForce, AllocatesNothing) {
                    object("block", at(0, 0, 0), std::make_shared<geometry::Box>(Eigen::Vector3d(0.2, 0.1, 0.02))),
                    object("ball", at(0.02, 0, 0), std::make_shared<geometry::Sphere>(0.03)),
                    object("can", at(-0.02, 0, 0), std::make_shared<geometry::Cylinder>(0.03, 0.05)),
-                   object("pill", at(0, 0.02, 0), std::make_shared<geometry::Capsule>(0.02, 0.05))};
+                   object("pill", at(0, 0.02, 0), std::make_shared<geometry::Capsule>(0.02, 0.05)),
+                   object("cup", at(0.01, 0.01, -0.02), std::make_shared<geometry::Revolution>(std::vector<Eigen::Vector2d>{
+                       {0, 0}, {0.05, 0}, {0.05, 0.06}, {0.046, 0.06}, {0.046, 0.006}, {0, 0.006}}))};
   std::vector<Feature> features;
   std::vector<BodyMotion> motions(10);
   for (int i = 0; i < 10; ++i) features.push_back(feature(sim_tests::capsule(0.012, 0.03), i));
