@@ -58,7 +58,8 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"dsl", {"framework"}},
     {"conformance", {"framework", "tasks", "dsl"}},
     {"plugins", {"framework"}},
-    {"sim", {"framework/geometry", "framework/description", "framework/runtime", "framework/control/sensed.h"}},
+    {"sim", {"framework/geometry", "framework/description", "framework/runtime", "framework/control/archive.h",
+             "framework/control/sensed.h"}},
     {"apps", {"framework", "tasks", "dsl", "sim", "conformance"}},
 };
 

@@ -130,6 +130,26 @@ TEST_P(Rest, UnderALoadDoesNotCreep) {
   }
 }
 
+TEST(Can, PushedWithHalfANewtonDoesNotCreep) {
+  const description::Scene table = scene({ground(), can(at(0, 0, 0.05))});
+  PlantOptions options;
+  description::Shove push;
+  push.name = "push";
+  push.window.from = 0;
+  push.body.object = 1;
+  push.force_W.x() = 0.5;
+  push.point.z() = -0.04;                                          // low, where it does not tip
+  options.shoves = {push};
+  SimbodyPlant plant(sim_tests::world(), table, nothing, options);
+  plant.advance(nothing, 8);
+  const Vector3d before = plant.objects()[1].pose.translation();
+  plant.advance(nothing, 2);
+  const double creep = (plant.objects()[1].pose.translation() - before).norm() / 2;
+  EXPECT_LT(creep, 0.05e-3) << "m/s";
+  EXPECT_LT(before.head<2>().norm(), 1e-3);
+  RecordProperty("creep_um_per_s", std::to_string(1e6 * creep));
+}
+
 TEST_P(Rest, SlidesWhereTheSlopeIsSteeperThanFriction) {
   const double tilt = std::atan(0.4), friction = 0.3;              // low enough that the can does not tip
   description::Scene table = scene({ground(), GetParam().object});
