@@ -65,9 +65,9 @@ control::ElementValues valuesWithin(const CheckedElement& element) {
   return values;
 }
 
-CheckedElement ElementChecker::check(const XmlElement& stack) {
-  readClasses(stack);
-  return checkElement(stack, *table_.find("stack"));
+CheckedElement ElementChecker::check(const XmlElement& root) {
+  readClasses(root);
+  return checkElement(root, *table_.find(root.name));
 }
 
 void ElementChecker::readClasses(const XmlElement& stack) {

@@ -31,7 +31,8 @@ class ElementChecker {
  public:
   ElementChecker(const control::ElementTable& table, Findings& findings) : table_(table), findings_(findings) {}
 
-  CheckedElement check(const XmlElement& stack);
+  /// The outermost element of a document, by its own row.
+  CheckedElement check(const XmlElement& root);
 
  private:
   using Prototype = std::map<std::string, control::Value>;         ///< attribute → value

@@ -24,8 +24,8 @@ struct Parameter {
 class DocumentReader {
  public:
   DocumentReader(const std::map<std::string, std::string>& set, const std::vector<std::string>& include_folders,
-                 Findings& findings)
-      : set_(set), include_folders_(include_folders), findings_(findings) {}
+                 Findings& findings, const std::string& outermost)
+      : set_(set), include_folders_(include_folders), findings_(findings), outermost_(outermost) {}
 
   StackDocument run(const std::string& file) {
     allowed_.push_back(identity(fs::absolute(file).parent_path().string()));
@@ -34,16 +34,16 @@ class DocumentReader {
     if (!source) {
       auto missing = std::make_shared<XmlSource>();
       missing->text = SourceText(file, "");
-      findings_.error(code::unreadable_file, *missing, 0, 1, "the stack '" + file + "' cannot be read");
+      findings_.error(code::unreadable_file, *missing, 0, 1, "the " + outermost_ + " '" + file + "' cannot be read");
       return std::move(document_);
     }
     if (tellTooLarge(*source)) return std::move(document_);
     document_.root = parseXml(source, findings_);
     if (!document_.root) return std::move(document_);
-    if (document_.root->name != "stack") {
+    if (document_.root->name != outermost_) {
       findings_.error(code::wrong_root, *document_.root,
-                      "a stack has <stack> outermost, not <" + document_.root->name + ">",
-                      nearestName(document_.root->name, {"stack"}));
+                      "a " + outermost_ + " has <" + outermost_ + "> outermost, not <" + document_.root->name + ">",
+                      nearestName(document_.root->name, {outermost_}));
       document_.root.reset();
       return std::move(document_);
     }
@@ -262,6 +262,7 @@ class DocumentReader {
   std::vector<std::string> allowed_;                               // their real paths, and the stack's own
   std::size_t bytes_ = 0;                                          // of all files
   Findings& findings_;
+  const std::string& outermost_;
   StackDocument document_;
   std::map<std::string, Parameter> parameters_;
   std::vector<std::string> open_files_;
@@ -305,8 +306,9 @@ std::vector<std::string> loadPlugins(const XmlElement& root, const std::function
 }
 
 StackDocument readDocument(const std::string& file, const std::map<std::string, std::string>& set,
-                           const std::vector<std::string>& include_folders, Findings& findings) {
-  return DocumentReader(set, include_folders, findings).run(file);
+                           const std::vector<std::string>& include_folders, Findings& findings,
+                           const std::string& outermost) {
+  return DocumentReader(set, include_folders, findings, outermost).run(file);
 }
 
 }  // namespace tactus::dsl

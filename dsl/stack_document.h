@@ -19,13 +19,16 @@ struct StackDocument {
   std::map<std::string, std::vector<description::Place>> included_from;
 };
 
-/// Null root, and errors in `findings`, when the file is not a stack at all; other errors leave a tree to check on.
+/// A file with `outermost` outermost, "stack" or "study".
+///
+/// Null root, and errors in `findings`, when the file is not one at all; other errors leave a tree to check on.
 /// A value that still holds "${" is one whose error has been told.
 ///
 /// Includes are read from the stack's own folder and those below it, and from `include_folders`; a file has at most
 /// 16 MiB, all together 64 MiB.
 StackDocument readDocument(const std::string& file, const std::map<std::string, std::string>& set,
-                           const std::vector<std::string>& include_folders, Findings& findings);
+                           const std::vector<std::string>& include_folders, Findings& findings,
+                           const std::string& outermost = "stack");
 
 /// Loads what every <plugin> names, in order and each once, before anything else is checked: plugins bring the elements
 /// that the rest is made of.  Throws the errors when one cannot be loaded.  Returns the names.

@@ -4,10 +4,12 @@
 #include "apps/tactus/errors.h"
 #include "apps/tactus/session.h"
 #include "apps/tactus/stack_arguments.h"
+#include "apps/tactus/study_check.h"
 #include "apps/tactus/text.h"
 #include "dsl/codes.h"
 #include "dsl/lint.h"
 #include "dsl/nearest_name.h"
+#include "dsl/read_study.h"
 #include "dsl/source_text.h"
 #include "framework/runtime/file_error.h"
 #include "sim/simbody_plant.h"
@@ -59,6 +61,11 @@ std::vector<dsl::Diagnostic> unknownTargets(const Session& session) {
 Findings checkFile(Program& program, const StackOptions& options, bool strict) {
   Findings findings;
   try {
+    if (dsl::isStudy(options.file)) {
+      planOf(program, dsl::readStudy(options.file, program.registry(), program.includeFolders()), findings.warnings);
+      if (strict && !findings.warnings.empty()) findings.exit_code = exit_invalid_stack;
+      return findings;
+    }
     const dsl::Stack stack = program.read(options, &findings.warnings);
     const auto warn = [&](const std::vector<dsl::Diagnostic>& remarks) {
       findings.warnings.insert(findings.warnings.end(), remarks.begin(), remarks.end());

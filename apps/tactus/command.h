@@ -43,6 +43,7 @@ void addCompare(CLI::App& program, Context& context);
 void addSolve(CLI::App& program, Context& context);
 void addDynamics(CLI::App& program, Context& context);
 void addGolden(CLI::App& program, Context& context);
+void addStudy(CLI::App& program, Context& context);
 void addPlugins(CLI::App& program, Context& context);
 void addExplain(CLI::App& program, Context& context);
 void addFormat(CLI::App& program, Context& context);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "apps/tactus/inputs.h"
 #include "apps/tactus/interrupt.h"
 #include "apps/tactus/run_folder.h"
 #include "apps/tactus/stack_arguments.h"
@@ -14,7 +15,6 @@
 #include "apps/tactus/text.h"
 #include "apps/tactus/tolerances.h"
 #include "apps/tactus/versions.h"
-#include "dsl/file_value.h"
 #include "dsl/model_search.h"
 #include "framework/runtime/file_error.h"
 
@@ -53,15 +53,6 @@ fs::path caseFolder(const std::string& name) {
                                                                        : fs::path("tests/golden") / name;
 }
 
-/// FNV-1a, 64 bit: tells whether an input is the one that was recorded.
-std::string hashOf(const std::string& content) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const unsigned char c : content) hash = (hash ^ c) * 0x100000001b3;
-  std::string digits = "fnv1a64:";
-  for (int shift = 60; shift >= 0; shift -= 4) digits += "0123456789abcdef"[(hash >> shift) & 15];
-  return digits;
-}
-
 /// Model name of the processor, "" where the system does not tell.
 std::string processor() {
   std::string info;
@@ -74,17 +65,6 @@ std::string processor() {
   if (line == std::string::npos) return "";
   const size_t colon = info.find(": ", line);
   return info.substr(colon + 2, info.find('\n', colon) - colon - 2);
-}
-
-/// Full paths of the files that the scene's shapes name, as the resolved stack has them.
-std::vector<std::string> filesOfShapes(const dsl::Stack& stack) {
-  std::vector<std::string> files;
-  for (const dsl::ObjectDescription& object : stack.objects)
-    for (const control::ElementValues& shape : object.shapes)
-      for (const control::AttributeRow& attribute : shape.row().attributes)
-        if (attribute.type == control::ValueType::file && shape.has(attribute.name))
-          files.push_back(dsl::fileOf(shape.value(attribute.name)));
-  return files;
 }
 
 ordered_json provenance(const Session& session, const std::string& reason, Program& program) {

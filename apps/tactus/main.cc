@@ -81,6 +81,7 @@ int runCommand(int argc, char** argv) {
   addSolve(app, context);
   addDynamics(app, context);
   addGolden(app, context);
+  addStudy(app, context);
   addPlugins(app, context);
   addReport(app, context);
   addExplain(app, context);

@@ -11,6 +11,7 @@ namespace tactus::app {
 namespace {
 
 constexpr double margin_left = 62, margin_right = 18, margin_top = 34, margin_bottom = 44;
+constexpr double row_height = 34;                                   // of a GroupPlot
 constexpr int colours = 32;
 
 /// A number with few digits, enough for a pixel.
@@ -91,37 +92,53 @@ class Frame {
   const Box& area() const { return area_; }
 
   std::string axes(const std::string& title, const std::string& x_label, const std::string& y_label) const {
-    std::string svg = "<rect x='" + px(area_.x) + "' y='" + px(area_.y) + "' width='" + px(area_.width) + "' height='" +
-                      px(area_.height) + "' fill='#fbfbfa' stroke='#c9c9c4'/>\n";
-    const auto ticks = [&](const Range& range, int count, bool decades, auto&& draw) {
-      const double step = decades ? std::max(1.0, niceStep(range, count)) : niceStep(range, count);
-      const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
-      for (double k = std::ceil(range.lower / step - 1e-9); k * step <= range.upper + 1e-9 * step; ++k) {
-        draw(k * step, decades ? decade(std::lround(k * step)) : fixed(k * step, decimals));
-      }
-    };
-    ticks(x_, static_cast<int>(std::max(2.0, area_.width / 80)), false, [&](double value, const std::string& text) {
+    return background() + xTicks() + yTicks() + labels(title, x_label, y_label);
+  }
+  std::string background() const {
+    return "<rect x='" + px(area_.x) + "' y='" + px(area_.y) + "' width='" + px(area_.width) + "' height='" +
+           px(area_.height) + "' fill='#fbfbfa' stroke='#c9c9c4'/>\n";
+  }
+  std::string xTicks() const {
+    std::string svg;
+    eachTick(x_, static_cast<int>(std::max(2.0, area_.width / 80)), false, [&](double value, const std::string& text) {
       const std::string at = px(px_x(value));
       svg += "<path d='M" + at + " " + px(area_.y) + "v" + px(area_.height) +
              "' stroke='#e7e7e2' fill='none'/><text x='" + at + "' y='" + px(area_.y + area_.height + 16) +
              "' text-anchor='middle' fill='#555'>" + text + "</text>\n";
     });
-    ticks(y_, static_cast<int>(std::max(2.0, area_.height / 32)), decades_, [&](double value, const std::string& text) {
-      const double at = px_y(value);
-      svg += "<path d='M" + px(area_.x) + " " + px(at) + "h" + px(area_.width) +
-             "' stroke='#e7e7e2' fill='none'/><text x='" + px(area_.x - 7) + "' y='" + px(at + 4) +
-             "' text-anchor='end' fill='#555'>" + text + "</text>\n";
+    return svg;
+  }
+  std::string yTicks() const {
+    std::string svg;
+    eachTick(y_, static_cast<int>(std::max(2.0, area_.height / 32)), decades_, [&](double value, const std::string& text) {
+      svg += "<path d='M" + px(area_.x) + " " + px(px_y(value)) + "h" + px(area_.width) +
+             "' stroke='#e7e7e2' fill='none'/>" + yLabel(value, text);
     });
+    return svg;
+  }
+  /// A text left of the axis.
+  std::string yLabel(double value, const std::string& text) const {
+    return "<text x='" + px(area_.x - 7) + "' y='" + px(px_y(value) + 4) + "' text-anchor='end' fill='#555'>" +
+           escaped(text) + "</text>\n";
+  }
+  std::string labels(const std::string& title, const std::string& x_label, const std::string& y_label) const {
     const double middle = area_.y + area_.height / 2;
-    svg += "<text x='" + px(area_.x) + "' y='" + px(box_.y + 20) + "' font-size='14' font-weight='600' fill='#222'>" +
+    return "<text x='" + px(area_.x) + "' y='" + px(box_.y + 20) + "' font-size='14' font-weight='600' fill='#222'>" +
            escaped(title) + "</text>\n<text x='" + px(area_.x + area_.width / 2) + "' y='" +
            px(box_.y + box_.height - 8) + "' text-anchor='middle' fill='#333'>" + escaped(x_label) +
            "</text>\n<text transform='translate(" + px(box_.x + 16) + " " + px(middle) +
            ") rotate(-90)' text-anchor='middle' fill='#333'>" + escaped(y_label) + "</text>\n";
-    return svg;
   }
 
  private:
+  template <class Draw>
+  static void eachTick(const Range& range, int count, bool decades, Draw draw) {
+    const double step = decades ? std::max(1.0, niceStep(range, count)) : niceStep(range, count);
+    const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+    for (double k = std::ceil(range.lower / step - 1e-9); k * step <= range.upper + 1e-9 * step; ++k)
+      draw(k * step, decades ? decade(std::lround(k * step)) : fixed(k * step, decimals));
+  }
+
   Box box_, area_;
   Range x_, y_;
   bool decades_;
@@ -198,6 +215,38 @@ std::string haloText(double x, double y, const std::string& text) {
          "' fill='#222' stroke='#fff' stroke-width='3' paint-order='stroke'>" + escaped(text) + "</text>\n";
 }
 
+/// One row of a GroupPlot, at that height.
+std::string drawGroup(const Group& group, double at, const Frame& frame) {
+  constexpr double half_box = 9, point_spread = 12, golden = 0.6180339887498949;
+  std::string svg = frame.yLabel(at, group.label);
+  std::vector<double> values;
+  for (const double value : group.values)
+    if (isDrawn(value)) values.push_back(value);
+  if (values.empty() || !isDrawn(group.median)) return svg;
+  const double y = frame.px_y(at), reach = 1.5 * (group.upper_quartile - group.lower_quartile);
+  double lowest = group.lower_quartile, highest = group.upper_quartile;
+  for (const double value : values) {
+    if (value >= group.lower_quartile - reach) lowest = std::min(lowest, value);
+    if (value <= group.upper_quartile + reach) highest = std::max(highest, value);
+  }
+  const auto line = [&](double from, double to, double dy, const char* width) {
+    return "M" + pair(frame.px_x(from), y - dy) + "L" + pair(frame.px_x(to), y + dy) + "' stroke='#333' stroke-width='" +
+           width + "' fill='none'/>\n";
+  };
+  const double left = frame.px_x(group.lower_quartile), right = frame.px_x(group.upper_quartile);
+  svg += "<path d='" + line(lowest, group.lower_quartile, 0, "1.2") + "<path d='" +
+         line(group.upper_quartile, highest, 0, "1.2") + "<rect x='" + px(left) + "' y='" + px(y - half_box) + "' width='" +
+         px(std::max(0.5, right - left)) + "' height='" + px(2 * half_box) +
+         "' fill='#cfe0ee' stroke='#333'/>\n<path d='" + line(group.median, group.median, half_box, "2.4");
+  // Points of the same index stand at the same height in every row, spread evenly.
+  std::string points;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double turn = golden * static_cast<double>(i + 1);
+    points += "M" + pair(frame.px_x(values[i]), y + point_spread * (turn - std::floor(turn) - 0.5)) + "h0";
+  }
+  return svg + "<path d='" + points + "' fill='none' stroke='#d55e00' stroke-opacity='0.75' stroke-width='4.5' stroke-linecap='round'/>\n";
+}
+
 std::string drawMarker(const Marker& marker, const Frame& frame) {
   const double x = frame.px_x(marker.x), y = frame.px_y(marker.y);
   const std::string shape =
@@ -257,6 +306,29 @@ std::string draw(const LinePlot& given, const Box& box) {
   for (auto line = plot.lines.rbegin(); line != plot.lines.rend(); ++line) {
     if (!line->label.empty()) addKey(line->label, "stroke='" + line->colour + "' stroke-width='2.5'");
   }
+  return svg;
+}
+
+double heightOf(const GroupPlot& plot) {
+  return row_height * static_cast<double>(std::max<size_t>(1, plot.groups.size())) + margin_top + margin_bottom;
+}
+
+std::string draw(const GroupPlot& plot, const Box& box) {
+  Range x;
+  size_t longest = 0;
+  for (const Group& group : plot.groups) {
+    for (const double value : group.values) x.add(value);
+    longest = std::max(longest, group.label.size());
+  }
+  x.makeDrawable();
+  x.widen(0.04);
+  // Half of the picture at most for labels.
+  const double label_width = std::min(box.width / 2, 6.5 * static_cast<double>(longest) + 14) - margin_left;
+  const Frame frame({box.x + std::max(0.0, label_width), box.y, box.width - std::max(0.0, label_width), box.height}, x,
+                    {0, static_cast<double>(std::max<size_t>(1, plot.groups.size()))});
+  std::string svg = frame.background() + frame.xTicks() + frame.labels(plot.title, plot.x_label, "");
+  for (size_t i = 0; i < plot.groups.size(); ++i)
+    svg += drawGroup(plot.groups[i], static_cast<double>(plot.groups.size() - i) - 0.5, frame);
   return svg;
 }
 

@@ -48,6 +48,25 @@ struct PointPlot {
   std::vector<Marker> markers;
 };
 
+/// Values of one condition.
+struct Group {
+  std::string label;
+  std::vector<double> values;
+  double lower_quartile = 0, median = 0, upper_quartile = 0;       ///< NaN without values
+};
+
+/// A lying box from quartile to quartile for each group, with its median, whiskers to the furthest values within 1.5
+/// boxes (Tukey, Exploratory Data Analysis, 1977), and every value as a point.
+struct GroupPlot {
+  std::string title;
+  std::string x_label;
+  std::vector<Group> groups;                                       ///< from above
+};
+
+/// Pixels that a plot of these groups wants.
+double heightOf(const GroupPlot& plot);
+
+std::string draw(const GroupPlot& plot, const Box& box);
 std::string draw(const LinePlot& plot, const Box& box);
 std::string draw(const PointPlot& plot, const Box& box);
 /// A sentence instead of a plot that has nothing to show.

@@ -8,6 +8,7 @@
 
 #include "apps/tactus/command.h"
 #include "apps/tactus/text.h"
+#include "dsl/read_study.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/program_path.h"
 #include "sim/simbody_plant.h"
@@ -55,6 +56,7 @@ std::map<std::string, std::string> parseSettings(const std::vector<std::string>&
 Program::Program(const std::vector<std::string>& plugins)
     : plugins_(registry_, pluginFolders(plugins), runtime::shippedPluginFolder()) {
   dsl::addStructureElements(registry_);
+  dsl::addStudyElements(registry_);
   tasks::registerBuiltIns(registry_);
   for (const std::string& path : plugins) {
     if (!std::filesystem::is_directory(path)) plugins_.loadFile(path);
