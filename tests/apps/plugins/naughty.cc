@@ -1,5 +1,6 @@
 // A plugin whose task or back end goes wrong in the way, and from the time on, that the stack says.
 
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 
@@ -26,6 +27,7 @@ class Naughty final : public Task {
     if (tick.time < from_) return;
     if (fault_ == "nan") rows.force[0] = std::numeric_limits<double>::quiet_NaN();
     if (fault_ == "huge") rows.force[0] = 1e308;
+    if (fault_ == "abort") std::abort();
     if (fault_ == "throw") throw std::runtime_error("the licence server is on holiday");
     if (fault_ == "throw-other") throw 7;
     if (fault_ == "rows") rows.rows = 5;
@@ -128,7 +130,7 @@ void registerElements(Registry& registry) {
   row.name = "naughty.task";
   row.description = "Goes wrong.";
   row.attributes = {{.name = "fault", .type = ValueType::choice, .required = true,
-                     .choices = {"capacity", "nan", "huge", "throw", "throw-other", "rows", "resize"}},
+                     .choices = {"capacity", "nan", "huge", "throw", "throw-other", "rows", "resize", "abort"}},
                     {.name = "from", .type = ValueType::real, .unit = "s", .default_text = "0.0205"}};
   ElementRow moody;
   moody.name = "naughty.moody";
