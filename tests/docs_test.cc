@@ -91,6 +91,22 @@ TEST(Docs, EveryStackShownPassesCheckAndReadsBackResolved) {
   EXPECT_GE(checked, 2);
 }
 
+/// Studies are shown for the stack of examples/explore_table.
+TEST(Docs, EveryStudyShownPassesCheck) {
+  const tactus::testing::TemporaryFolder folder;
+  fs::copy(TACTUS_SOURCE_DIR "/examples/explore_table/stack.xml", folder.file("stack.xml"));
+  int checked = 0;
+  for (const fs::path& page : pages()) {
+    for (const std::string& block : blocks(page, "xml")) {
+      if (block.rfind("<study", 0) != 0) continue;
+      ++checked;
+      std::string said;
+      EXPECT_EQ(shell(kProgram + " check --strict " + folder.write("study.xml", block), &said), 0) << page << ":\n" << said;
+    }
+  }
+  EXPECT_GE(checked, 1);
+}
+
 /// Blocks of `console`: what follows a "$ tactus …" is what it prints, from the project's folder.
 TEST(Docs, WhatCommandsPrintIsWhatThePagesShow) {
   int commands = 0;
@@ -130,7 +146,8 @@ TEST(Docs, EveryStackValidatesAgainstTheSchema) {
       if (!entry.is_regular_file()) continue;
       std::ifstream in(entry.path());
       const std::string text((std::istreambuf_iterator<char>(in)), {});
-      const bool stack = entry.path().extension() == ".xml" && text.find("<stack") != std::string::npos;
+      const bool stack = entry.path().extension() == ".xml" &&
+                         (text.find("<stack") != std::string::npos || text.find("<study") != std::string::npos);
       if (stack && text.find("<plugin name") == std::string::npos) files.push_back(entry.path());
     }
   }

@@ -41,7 +41,7 @@ std::string section(const std::string& title, const std::string& body) {
 }
 
 GroupPlot groupsOf(const StudyResults& results, size_t metric) {
-  GroupPlot plot{results.metrics[metric], results.metrics[metric], {}};
+  GroupPlot plot{results.metrics[metric], "", {}};
   for (long condition = 0; condition < results.plan.conditions(); ++condition) {
     const ConditionFigures& one = results.figures(metric, condition);
     plot.groups.push_back({results.plan.label(results.plan.levelsOf(condition)) + " (" + std::to_string(one.figures.n) + ")",

@@ -51,7 +51,7 @@ const std::string kInside = R"(  <factor parameter="press" values="0.3 0.6"/>
   <seeds from="3" count="4"/>
   <backends names="null-space qp/active-set"/>
   <metric name="contact_force_mean_N"/><metric name="contact_force_peak_N"/>
-  <compare metric="contact_force_mean_N" by="press" baseline="0.3"/>
+  <compare metric="contact_force_peak_N" by="press" baseline="0.3"/>
   <compare metric="contact_force_peak_N" baseline="null-space"/>)";
 const std::string kShort = "duration=\"0.6\"";
 
@@ -99,14 +99,14 @@ TEST(StudyCommand, TablesSayWhatTheRunsSaid) {
     EXPECT_EQ(run["duration_s"], 0.6);
     EXPECT_EQ(trial["backend"] == "null-space", run["backend"] == "null-space");
     EXPECT_EQ(run["wanted_force_N"].get<double>(), std::stod(trial["press"].get<std::string>()));
-    EXPECT_EQ(trial["contact_force_mean_N"], run["metrics"]["contact_force_mean_N"]);
+    EXPECT_EQ(trial["contact_force_peak_N"], run["metrics"]["contact_force_peak_N"]);
     EXPECT_EQ(trial["status"], "done");
-    forces[trial["press"].get<std::string>() + trial["backend"].get<std::string>()].push_back(trial["contact_force_mean_N"]);
+    forces[trial["press"].get<std::string>() + trial["backend"].get<std::string>()].push_back(trial["contact_force_peak_N"]);
   }
   const nlohmann::json summary = study.json("out/summary.json");
   ASSERT_EQ(summary.size(), 8u);
   for (const auto& row : summary) {
-    if (row["metric"] != "contact_force_mean_N") continue;
+    if (row["metric"] != "contact_force_peak_N") continue;
     const std::vector<double>& values = forces[row["press"].get<std::string>() + row["backend"].get<std::string>()];
     ASSERT_EQ(values.size(), 4u);
     const double mean = (values[0] + values[1] + values[2] + values[3]) / 4;
@@ -350,7 +350,7 @@ TEST(StudyCommand, ErrorsStandAtTheirPlace) {
       {"<seeds count=\"1000001\"/>", "the study has 1000001 trials, and may have 1000000"},
       {"<backends names=\"null-space qpp\"/>", "error[E037]: there is no back end 'qpp'"},
       {"<backends names=\"qp/fast\"/>", "error[E037]: back end 'qp' has no variant 'fast'"},
-      {"<metric name=\"a\"/><metric name=\"a\"/>", ":2:32: error[E020]: the study reports 'a' already"},
+      {"<metric name=\"a\"/><metric name=\"a\"/>", ":2:33: error[E020]: the study reports 'a' already"},
       {"<metric name=\"a\"/><compare metric=\"b\" baseline=\"qp\"/>", "the study reports no metric 'b'; there is a"},
       {"<compare metric=\"a\" baseline=\"qp\"/>", "error[E014]: the study has no factor 'backend'; there is none"},
       {"<backends names=\"qp hqp\"/><compare metric=\"a\" baseline=\"hq\"/>", "'backend' has no level 'hq'; there is qp, hqp"},
