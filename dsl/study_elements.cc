@@ -27,7 +27,8 @@ ElementRow studyRow() {
                          {.name = "duration", .type = ValueType::real, .unit = "s",
                           .description = "Simulated time of each trial; not given: the stack's.", .lower = 0,
                           .upper = longest_run, .lower_open = true},
-                         {.name = "keep", .type = ValueType::choice, .default_text = study.keeps_runs ? "runs" : "metrics",
+                         {.name = "keep", .type = ValueType::choice,
+                          .default_text = study.keeps_runs ? "runs" : "metrics",
                           .description = "What stays of a trial: its whole run folder, or run.json alone.",
                           .choices = {"runs", "metrics"}}},
           .children = {{"factor"}, {"seeds", 0, 1}, {"backends", 0, 1}, {"metric"}, {"compare"}, {"include"}}};
@@ -58,7 +59,7 @@ ElementRow backendsRow() {
           .kind = ElementKind::structure,
           .description = "Back ends that stand in the controller's place in turn; without it, the stack's own.",
           .attributes = {{.name = "names", .type = ValueType::text, .required = true,
-                          .description = "Separated by blanks, with variants as on the command line: `qp/active-set`."}}};
+                          .description = "Separated by blanks, with variants as for --backend: `qp/active-set`."}}};
 }
 
 ElementRow metricRow() {

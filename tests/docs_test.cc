@@ -101,7 +101,8 @@ TEST(Docs, EveryStudyShownPassesCheck) {
       if (block.rfind("<study", 0) != 0) continue;
       ++checked;
       std::string said;
-      EXPECT_EQ(shell(kProgram + " check --strict " + folder.write("study.xml", block), &said), 0) << page << ":\n" << said;
+      const std::string file = folder.write("study.xml", block);
+      EXPECT_EQ(shell(kProgram + " check --strict " + file, &said), 0) << page << ":\n" << said;
     }
   }
   EXPECT_GE(checked, 1);

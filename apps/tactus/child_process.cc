@@ -41,7 +41,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std:
   const pid_t parent = ::getpid();
   process_ = ::fork();
   if (process_ == 0) {
-    // Nothing but system calls until the program is another one.  Ctrl-C at the terminal is for the parent, which decides.
+    // Nothing but system calls until the program is another one.  Ctrl-C at the terminal is for the parent alone.
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(0);

@@ -110,7 +110,8 @@ class Frame {
   }
   std::string yTicks() const {
     std::string svg;
-    eachTick(y_, static_cast<int>(std::max(2.0, area_.height / 32)), decades_, [&](double value, const std::string& text) {
+    const auto count = static_cast<int>(std::max(2.0, area_.height / 32));
+    eachTick(y_, count, decades_, [&](double value, const std::string& text) {
       svg += "<path d='M" + px(area_.x) + " " + px(px_y(value)) + "h" + px(area_.width) +
              "' stroke='#e7e7e2' fill='none'/>" + yLabel(value, text);
     });
@@ -230,13 +231,13 @@ std::string drawGroup(const Group& group, double at, const Frame& frame) {
     if (value <= group.upper_quartile + reach) highest = std::max(highest, value);
   }
   const auto line = [&](double from, double to, double dy, const char* width) {
-    return "M" + pair(frame.px_x(from), y - dy) + "L" + pair(frame.px_x(to), y + dy) + "' stroke='#333' stroke-width='" +
-           width + "' fill='none'/>\n";
+    return "M" + pair(frame.px_x(from), y - dy) + "L" + pair(frame.px_x(to), y + dy) +
+           "' stroke='#333' stroke-width='" + width + "' fill='none'/>\n";
   };
   const double left = frame.px_x(group.lower_quartile), right = frame.px_x(group.upper_quartile);
   svg += "<path d='" + line(lowest, group.lower_quartile, 0, "1.2") + "<path d='" +
-         line(group.upper_quartile, highest, 0, "1.2") + "<rect x='" + px(left) + "' y='" + px(y - half_box) + "' width='" +
-         px(std::max(0.5, right - left)) + "' height='" + px(2 * half_box) +
+         line(group.upper_quartile, highest, 0, "1.2") + "<rect x='" + px(left) + "' y='" + px(y - half_box) +
+         "' width='" + px(std::max(0.5, right - left)) + "' height='" + px(2 * half_box) +
          "' fill='#cfe0ee' stroke='#333'/>\n<path d='" + line(group.median, group.median, half_box, "2.4");
   // Points of the same index stand at the same height in every row, spread evenly.
   std::string points;
@@ -244,7 +245,8 @@ std::string drawGroup(const Group& group, double at, const Frame& frame) {
     const double turn = golden * static_cast<double>(i + 1);
     points += "M" + pair(frame.px_x(values[i]), y + point_spread * (turn - std::floor(turn) - 0.5)) + "h0";
   }
-  return svg + "<path d='" + points + "' fill='none' stroke='#d55e00' stroke-opacity='0.75' stroke-width='4.5' stroke-linecap='round'/>\n";
+  return svg + "<path d='" + points +
+         "' fill='none' stroke='#d55e00' stroke-opacity='0.75' stroke-width='4.5' stroke-linecap='round'/>\n";
 }
 
 std::string drawMarker(const Marker& marker, const Frame& frame) {

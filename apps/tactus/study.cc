@@ -85,7 +85,9 @@ std::string listText(const ordered_json& list) {
     }
     rows.emplace_back();
     for (const auto& [key, value] : trial.items())
-      rows.back().push_back(value.is_boolean() ? (value.get<bool>() ? "finished" : "") : value.is_string() ? value.get<std::string>() : value.dump());
+      rows.back().push_back(key == "finished"   ? (value.get<bool>() ? "finished" : "")
+                            : value.is_string() ? value.get<std::string>()
+                                                : value.dump());
   }
   return textTable(rows);
 }
@@ -196,7 +198,8 @@ int runStudy(const StudyArguments& arguments, bool json) {
     if (folder.isFinished(number)) ++state.finished;
     else waiting.push_back(number);
   }
-  if (state.finished > 0) std::cerr << "tactus study: " << state.finished << " of " << state.all << " trials are finished already\n";
+  if (state.finished > 0)
+    std::cerr << "tactus study: " << state.finished << " of " << state.all << " trials are finished already\n";
   const bool all_run = runTrials(study, arguments, folder, std::move(waiting), state, interrupt.stop());
   if (!all_run) {
     std::cerr << "tactus study: interrupted; finished trials are kept, the same command goes on\n";
@@ -256,14 +259,16 @@ int mergeStudies(const MergeArguments& arguments, bool json) {
 }  // namespace
 
 void addStudy(CLI::App& program, Context& context) {
-  CLI::App* command = program.add_subcommand("study", "A stack under many conditions, on all cores, and what came of it");
+  CLI::App* command =
+      program.add_subcommand("study", "A stack under many conditions, on all cores, and what came of it");
   const auto arguments = std::make_shared<StudyArguments>();
   command->add_option("STUDY", arguments->file, "The study's XML file")->type_name("");
   command->add_option("--out", arguments->out, "Study folder; studies/<study> without it")->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "Trials at a time; one for each core without it")
       ->type_name("N")
       ->check(CLI::Range(1L, 100000L));
-  command->add_option("--shard", arguments->shard, "Run the i-th of n parts alone, as one job of an array")->type_name("I/N");
+  command->add_option("--shard", arguments->shard, "Run the i-th of n parts alone, as one job of an array")
+      ->type_name("I/N");
   command->add_flag("--dry-run", arguments->dry_run, "List the trials and run none");
   command->add_flag("--retry", arguments->retry, "Run trials again that failed");
   declarePlugins(*command, arguments->plugins);
@@ -286,8 +291,8 @@ Examples:
   merge->add_option("DIR", merged->folders, "Study folders")->required()->type_name("DIR");
   merge->add_option("--out", merged->out, "Folder for all of it; the first DIR without it")->type_name("DIR");
   merge->add_flag("--json", context.json, "As for study");
-  merge->footer(R"(Folders of one study, run with --shard on machines that share no file system, or the one that they share.  Exit code 1:
-trials are missing, or one has come out in two ways.
+  merge->footer(R"(Folders of one study, run with --shard on machines that share no file system, or the one that they share.
+Exit code 1: trials are missing, or one has come out in two ways.
 
 Examples:
   tactus study merge studies/press

@@ -72,10 +72,11 @@ std::map<std::string, std::string> inputsOf(const Program& program, const dsl::S
   std::map<std::string, std::string> inputs;
   for (const auto* files : {&study.files, &stack.files})
     for (const auto& [file, content] : *files) inputs[fromFolderOf(study, file)] = hashOf(content);
-  for (const std::string& file : filesOfShapes(stack)) inputs[fromFolderOf(study, file)] = hashOf(runtime::readFile(file));
+  for (const std::string& file : filesOfShapes(stack))
+    inputs[fromFolderOf(study, file)] = hashOf(runtime::readFile(file));
   for (const runtime::LoadedPlugin& plugin : program.plugins().loaded())
     inputs["plugin '" + plugin.name + "'"] = hashOf(runtime::readFile(plugin.path));
-  inputs["the program tactus"] = hashOf(runtime::readFile("/proc/self/exe"));
+  inputs["the program tactus"] = hashOfProgram();
   return inputs;
 }
 

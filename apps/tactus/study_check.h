@@ -8,8 +8,8 @@
 
 namespace tactus::app {
 
-/// Holds a study against its stack: every condition is read and brought to life once.  Throws dsl::InvalidStack with what
-/// the study or the stack under one of the conditions has wrong; figures that no run has are warnings.
+/// Holds a study against its stack: every condition is read and brought to life once.  Throws dsl::InvalidStack with
+/// what the study or the stack under one of the conditions has wrong; figures that no run has are warnings.
 StudyPlan planOf(Program& program, const dsl::Study& study, std::vector<dsl::Diagnostic>& warnings);
 
 /// What `tactus run` is told of a trial, without a folder.

@@ -64,7 +64,8 @@ StudyFolder::StudyFolder(const std::string& path) : path_(path) {
   plan_ = planFromJson(file, readJson(file));
 }
 
-StudyFolder::StudyFolder(const std::string& path, const StudyPlan& plan, const Shard& shard) : path_(path), plan_(plan) {
+StudyFolder::StudyFolder(const std::string& path, const StudyPlan& plan, const Shard& shard)
+    : path_(path), plan_(plan) {
   fs::create_directories(path);
   const std::string file = path + "/study.json";
   const bool is_new = !isStudyFolder(path);

@@ -21,7 +21,7 @@ struct Shard {
 struct TrialRecord {
   Trial trial;
   ProcessEnd end;
-  std::string status;                                              ///< that of run.json; "crashed" when a signal ended it
+  std::string status;                                              ///< that of run.json; "crashed" by a signal
   std::string message;                                             ///< why it failed, "" where nobody said
   long fallback_ticks = 0;
   std::vector<std::pair<std::string, double>> metrics;             ///< NaN: never met

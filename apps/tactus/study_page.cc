@@ -44,8 +44,9 @@ GroupPlot groupsOf(const StudyResults& results, size_t metric) {
   GroupPlot plot{results.metrics[metric], "", {}};
   for (long condition = 0; condition < results.plan.conditions(); ++condition) {
     const ConditionFigures& one = results.figures(metric, condition);
-    plot.groups.push_back({results.plan.label(results.plan.levelsOf(condition)) + " (" + std::to_string(one.figures.n) + ")",
-                           one.values, one.figures.lower_quartile, one.figures.median, one.figures.upper_quartile});
+    const std::string label = results.plan.label(results.plan.levelsOf(condition));
+    plot.groups.push_back({label + " (" + std::to_string(one.figures.n) + ")", one.values, one.figures.lower_quartile,
+                           one.figures.median, one.figures.upper_quartile});
   }
   return plot;
 }
@@ -66,12 +67,12 @@ std::string boxPlotOf(const StudyResults& results, size_t metric) {
 }
 
 std::string studyPage(const StudyResults& results) {
-  std::string html = section("Trials", "<p>" + std::to_string(results.finished()) + " of " +
-                                           std::to_string(results.plan.trials()) + " finished, " +
-                                           std::to_string(results.failed()) + " failed; " +
-                                           std::to_string(results.plan.conditions()) + " conditions, " +
-                                           counted(static_cast<size_t>(results.plan.seeds), "seed", "seeds") + " from " +
-                                           std::to_string(results.plan.first_seed) + ".</p>\n");
+  const StudyPlan& plan = results.plan;
+  std::string html = section(
+      "Trials", "<p>" + std::to_string(results.finished()) + " of " + std::to_string(plan.trials()) + " finished, " +
+                    std::to_string(results.failed()) + " failed; " + std::to_string(plan.conditions()) +
+                    " conditions, " + counted(static_cast<size_t>(plan.seeds), "seed", "seeds") + " from " +
+                    std::to_string(plan.first_seed) + ".</p>\n");
   std::string remarks;
   for (const std::string& remark : remarksOf(results)) remarks += "<li>" + escaped(remark) + "</li>\n";
   html += section("To be known", remarks.empty() ? "" : "<ul>" + remarks + "</ul>\n");

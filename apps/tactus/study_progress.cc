@@ -15,7 +15,8 @@ constexpr std::chrono::seconds in_log{30};
 std::string clockText(double seconds) {
   const long all = std::lround(seconds);
   const auto two = [](long number) { return (number < 10 ? "0" : "") + std::to_string(number); };
-  const std::string minutes = all < 3600 ? std::to_string(all / 60) : std::to_string(all / 3600) + ":" + two(all / 60 % 60);
+  const std::string minutes =
+      all < 3600 ? std::to_string(all / 60) : std::to_string(all / 3600) + ":" + two(all / 60 % 60);
   return minutes + ":" + two(all % 60);
 }
 

@@ -14,7 +14,8 @@ struct StudyState {
   long running = 0;
 };
 
-/// "12 of 60 trials, 1 failed, 2 running, 4:05 left"; time left by the mean of this run, nothing before its first trial.
+/// "12 of 60 trials, 1 failed, 2 running, 4:05 left"; time left by the mean of this run, nothing before its first
+/// trial.
 std::string progressText(const StudyState& state, double elapsed_s);
 
 /// Tells on stderr how far a study is: in one line of a terminal, or now and then in a log.

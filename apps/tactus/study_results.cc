@@ -80,7 +80,8 @@ void addComparisons(const dsl::StudyComparison& asked, StudyResults& results) {
   const size_t baseline = indexOf(by->levels, asked.baseline);
   for (long condition = 0; condition < plan.conditions(); ++condition) {
     const std::vector<size_t> levels = plan.levelsOf(condition);
-    if (levels[factor] != baseline) results.comparisons.push_back(compare(results, asked, metric, factor, levels, baseline));
+    if (levels[factor] != baseline)
+      results.comparisons.push_back(compare(results, asked, metric, factor, levels, baseline));
   }
 }
 
@@ -180,7 +181,8 @@ ordered_json trialTable(const StudyResults& results) {
     row["status"] = record ? record->status : "missing";
     row["exit_code"] = record && record->end.signal == 0 ? ordered_json(record->end.exit_code) : ordered_json();
     row["fallback_ticks"] = record ? ordered_json(record->fallback_ticks) : ordered_json();
-    for (const std::string& metric : results.metrics) row[metric] = record ? number(figureOf(*record, metric)) : ordered_json();
+    for (const std::string& metric : results.metrics)
+      row[metric] = record ? number(figureOf(*record, metric)) : ordered_json();
     table.push_back(std::move(row));
   }
   return table;
@@ -191,7 +193,8 @@ ordered_json conditionTable(const StudyResults& results) {
   for (const ConditionFigures& one : results.conditions) {
     ordered_json row{{"metric", one.metric}};
     const std::vector<size_t> levels = results.plan.levelsOf(one.condition);
-    for (size_t f = 0; f < results.plan.factors.size(); ++f) row[results.plan.factors[f].name] = results.plan.level(levels, f);
+    for (size_t f = 0; f < results.plan.factors.size(); ++f)
+      row[results.plan.factors[f].name] = results.plan.level(levels, f);
     row["n"] = one.figures.n;
     row["failed"] = one.failed;
     row["without"] = one.without;
@@ -211,7 +214,10 @@ ordered_json conditionTable(const StudyResults& results) {
 ordered_json comparisonTable(const StudyResults& results) {
   ordered_json table = ordered_json::array();
   for (const PairedComparison& one : results.comparisons) {
-    ordered_json row{{"metric", one.asked.metric}, {"by", one.asked.by}, {"level", one.level}, {"baseline", one.asked.baseline}};
+    ordered_json row{{"metric", one.asked.metric},
+                     {"by", one.asked.by},
+                     {"level", one.level},
+                     {"baseline", one.asked.baseline}};
     for (size_t f = 0; f < results.plan.factors.size(); ++f) {
       const std::string& name = results.plan.factors[f].name;
       row["at_" + name] = name == one.asked.by ? ordered_json() : ordered_json(results.plan.level(one.levels, f));
@@ -255,44 +261,52 @@ std::string csvOf(const ordered_json& table) {
 std::vector<std::string> remarksOf(const StudyResults& results) {
   std::vector<std::string> remarks;
   const long all = results.plan.trials(), finished = results.finished(), failed = results.failed();
-  if (finished < all) remarks.push_back(std::to_string(all - finished) + " of " + std::to_string(all) + " trials have not run");
-  if (failed > 0) remarks.push_back(std::to_string(failed) + " of " + std::to_string(all) + " trials failed; no figure counts them");
+  const std::string of_all = " of " + std::to_string(all) + " trials ";
+  if (finished < all) remarks.push_back(std::to_string(all - finished) + of_all + "have not run");
+  if (failed > 0) remarks.push_back(std::to_string(failed) + of_all + "failed; no figure counts them");
   for (const auto& record : results.trials)
     if (record && record->failed())
-      remarks.push_back("trial " + std::to_string(record->trial.number) + " (" + results.plan.label(record->trial.levels) +
-                        ", seed " + std::to_string(record->trial.seed) + "): " + record->status +
+      remarks.push_back("trial " + std::to_string(record->trial.number) + " (" +
+                        results.plan.label(record->trial.levels) + ", seed " + std::to_string(record->trial.seed) + "): " + record->status +
                         (record->message.empty() ? "" : ": " + record->message));
   long fallen = 0;
   for (const auto& record : results.trials) fallen += record && !record->failed() && record->fallback_ticks > 0;
-  if (fallen > 0) remarks.push_back("in " + std::to_string(fallen) + " trials ticks fell back: their figures are not the stack's alone");
+  if (fallen > 0)
+    remarks.push_back("in " + std::to_string(fallen) + " trials ticks fell back: their figures are not the stack's alone");
   if (const long equal = results.withoutScatter(); equal > 0)
     remarks.push_back("the seed changes nothing in " + std::to_string(equal) + " of " +
-                      std::to_string(results.plan.conditions()) + " conditions: their trials are one run again and again");
+                      std::to_string(results.plan.conditions()) +
+                      " conditions: their trials are one run again and again");
   return remarks;
 }
 
 std::string resultsText(const StudyResults& results) {
   std::string text = results.plan.name + ": " + std::to_string(results.finished()) + " of " +
-                     std::to_string(results.plan.trials()) + " trials, " + std::to_string(results.failed()) + " failed\n";
+                     std::to_string(results.plan.trials()) + " trials, " + std::to_string(results.failed()) +
+                     " failed\n";
   for (const std::string& metric : results.metrics) {
     std::vector<std::vector<std::string>> rows{{metric, "n", "mean", "sd", "median", "min", "max"}};
     for (const ConditionFigures& one : results.conditions) {
       if (one.metric != metric) continue;
       std::vector<std::string> row{"  " + results.plan.label(results.plan.levelsOf(one.condition)),
                                    std::to_string(one.figures.n)};
-      for (const double value : {one.figures.mean, one.figures.sd, one.figures.median, one.figures.minimum, one.figures.maximum})
+      const SampleFigures& sample = one.figures;
+      for (const double value : {sample.mean, sample.sd, sample.median, sample.minimum, sample.maximum})
         row.push_back(rounded(value));
       rows.push_back(std::move(row));
     }
     text += "\n" + textTable(rows);
   }
   if (results.comparisons.empty()) return text;
-  std::vector<std::vector<std::string>> rows{{"paired by seed", "pairs", "difference", "95 % interval", "t", "p", "p Holm", "d_z", "Wilcoxon p", "p Holm"}};
+  std::vector<std::vector<std::string>> rows{{"paired by seed", "pairs", "difference", "95 % interval", "t", "p",
+                                              "p Holm", "d_z", "Wilcoxon p", "p Holm"}};
   for (const PairedComparison& one : results.comparisons) {
     const std::string within = placeOf(results.plan, one);
-    rows.push_back({one.asked.metric + ": " + one.level + " − " + one.asked.baseline + (within.empty() ? "" : ", " + within),
+    const StudentTest& student = one.student;
+    rows.push_back({one.asked.metric + ": " + one.level + " − " + one.asked.baseline +
+                        (within.empty() ? "" : ", " + within),
                     std::to_string(one.differences.n), rounded(one.differences.mean, 3),
-                    std::isnan(one.student.p) ? "–" : rounded(one.student.lower, 3) + " … " + rounded(one.student.upper, 3),
+                    std::isnan(student.p) ? "–" : rounded(student.lower, 3) + " … " + rounded(student.upper, 3),
                     rounded(one.student.t, 3), rounded(one.student.p, 3), rounded(one.student_holm, 3),
                     rounded(one.student.effect, 3), rounded(one.wilcoxon.p, 3), rounded(one.wilcoxon_holm, 3)});
   }

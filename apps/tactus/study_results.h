@@ -38,7 +38,7 @@ struct PairedComparison {
 struct StudyResults {
   StudyPlan plan;
   std::vector<std::optional<TrialRecord>> trials;                  ///< in their order; nothing where not finished
-  std::vector<std::string> metrics;                                ///< of the plan; without any there, all that trials have
+  std::vector<std::string> metrics;                                ///< of the plan; none there: all that trials have
   std::vector<ConditionFigures> conditions;                        ///< metric by metric
   std::vector<PairedComparison> comparisons;
 

@@ -13,13 +13,13 @@
 namespace tactus::app {
 namespace {
 
-/// Hours of sleep gained by ten patients, the second drug less the first: Cushny & Peebles (1905), Student's own example
-/// (1908).
+/// Hours of sleep gained by ten patients, the second drug less the first: Cushny & Peebles (1905), Student's own
+/// example (1908).
 const std::vector<double> sleep{1.9 - 0.7, 0.8 + 1.6, 1.1 + 0.2, 0.1 + 1.2, -0.1 + 0.1,
                                 4.4 - 3.4, 5.5 - 3.7, 1.6 - 0.8, 4.6 - 0.0, 3.4 - 2.0};
 
-/// Heights of cross- less self-fertilised maize, eighths of an inch: Darwin (1876), in Fisher, The Design of Experiments
-/// (1935), § 17.
+/// Heights of cross- less self-fertilised maize, eighths of an inch: Darwin (1876), in Fisher, The Design of
+/// Experiments (1935), § 17.
 const std::vector<double> maize{49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48};
 
 /// Hamilton depression scale before less after tranquilliser: Hollander & Wolfe, Nonparametric Statistical Methods
@@ -54,7 +54,7 @@ TEST(StudentTest, DistributionMeetsItsClosedForms) {
     EXPECT_EQ(studentTwoSided(-t, 7), studentTwoSided(t, 7));
   }
   EXPECT_EQ(studentTwoSided(0, 5), 1);
-  // Many degrees of freedom: the normal distribution, and the first term of its expansion (Abramowitz & Stegun 26.7.10).
+  // Many degrees of freedom: the normal distribution and the first term beyond (Abramowitz & Stegun 26.7).
   const double z = 1.959963984540054, density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
   EXPECT_NEAR(studentTwoSided(z, 1e5), 0.05 + density * z * (z * z + 1) / (2 * 1e5), 1e-9);
 }

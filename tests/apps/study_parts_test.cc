@@ -74,7 +74,8 @@ TEST(StudyProgress, TellsTimeLeftFromThisRunAlone) {
 }
 
 TEST(GroupPlot, ShowsEveryValueOfEveryGroup) {
-  const GroupPlot plot{"force", "N", {{"a < b", {1, 2, 3, 4, 100}, 2, 3, 4}, {"none", {}, NAN, NAN, NAN}, {"one", {5}, 5, 5, 5}}};
+  const GroupPlot plot{
+      "force", "N", {{"a < b", {1, 2, 3, 4, 100}, 2, 3, 4}, {"none", {}, NAN, NAN, NAN}, {"one", {5}, 5, 5, 5}}};
   const std::string svg = svgDocument(900, heightOf(plot), draw(plot, {0, 0, 900, heightOf(plot)}));
   tinyxml2::XMLDocument document;
   EXPECT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS) << document.ErrorStr();

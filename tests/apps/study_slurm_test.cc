@@ -24,18 +24,21 @@ std::pair<int, std::string> shell(const std::string& command) {
 TEST(StudyOnSlurm, AJobArrayMakesTheTablesOfOneMachine) {
   const TemporaryFolder folder, cluster;
   changedStack(folder, "name=\"floor\"", "name=\"floor\" jitter=\"0 0 0.01\"");
-  const std::string study = folder.write(
-      "study.xml", "<study format=\"1\" stack=\"stack.xml\" duration=\"0.5\"><factor parameter=\"press\" values=\"0.3 0.6\"/>"
-                   "<seeds count=\"5\"/><compare metric=\"contact_force_mean_N\" by=\"press\" baseline=\"0.3\"/></study>");
+  const std::string study = folder.write("study.xml", R"(<study format="1" stack="stack.xml" duration="0.5">
+  <factor parameter="press" values="0.3 0.6"/>
+  <seeds count="5"/>
+  <compare metric="contact_force_mean_N" by="press" baseline="0.3"/>
+</study>)");
   ASSERT_EQ(tactus({"study", study, "--out", folder.file("alone")}).exit_code, 0);
 
   // The array, then a job that merges when all of its jobs have ended.
   const std::string program = TACTUS_BINARY_DIR "/bin/tactus", out = folder.file("array");
-  const std::string job = folder.write(
-      "submit", "set -e\nexport TACTUS=" + program + "\ncd " + folder.path() + "\njob=$(sbatch --parsable --array=1-3 " +
-                    TACTUS_SOURCE_DIR "/scripts/study.sbatch " + study + " " + out + ")\n" +
-                    "sbatch --wait --dependency=afterany:$job --output=merge.txt --wrap \"" + program + " study merge " +
-                    out + "\"\ncat slurm-*.out\n");
+  const std::string merge = "--wrap \"" + program + " study merge " + out + "\"";
+  const std::string array = TACTUS_SOURCE_DIR "/scripts/study.sbatch " + study + " " + out;
+  const std::string job = folder.write("submit", "set -e\ncd " + folder.path() + "\nexport TACTUS=" + program +
+                                                     "\njob=$(sbatch --parsable --array=1-3 " + array + ")\n" +
+                                                     "sbatch --wait --dependency=afterany:$job --output=merge.txt " +
+                                                     merge + "\ncat slurm-*.out\n");
   const auto [code, said] =
       shell(TACTUS_SOURCE_DIR "/tests/apps/with_slurm " + cluster.path() + " timeout 120 bash " + job);
   if (code == 77) GTEST_SKIP() << said;
