@@ -182,7 +182,7 @@ ordered_json trialTable(const StudyResults& results) {
     row["exit_code"] = record && record->end.signal == 0 ? ordered_json(record->end.exit_code) : ordered_json();
     row["fallback_ticks"] = record ? ordered_json(record->fallback_ticks) : ordered_json();
     for (const std::string& metric : results.metrics)
-      row[metric] = record ? number(figureOf(*record, metric)) : ordered_json();
+      row[metric] = record && !record->failed() ? number(figureOf(*record, metric)) : ordered_json();
     table.push_back(std::move(row));
   }
   return table;

@@ -52,7 +52,7 @@ struct StudyResults {
 StudyResults resultsOf(const StudyFolder& folder);
 StudyResults resultsOf(const StudyPlan& plan, std::vector<std::optional<TrialRecord>> trials);
 
-/// Tables as arrays of flat objects with the same keys: what has no value is null.
+/// Tables as arrays of flat objects with the same keys: what has no value is null, as are figures of trials that failed.
 nlohmann::ordered_json trialTable(const StudyResults& results);
 nlohmann::ordered_json conditionTable(const StudyResults& results);
 nlohmann::ordered_json comparisonTable(const StudyResults& results);

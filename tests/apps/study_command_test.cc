@@ -283,6 +283,8 @@ TEST(StudyCommand, FailedTrialsAreToldAndCountNowhere) {
     EXPECT_EQ(row["n"], row["from"] == "9" ? 2 : 0);
     EXPECT_EQ(row["mean"].is_number(), row["from"] == "9");
   }
+  for (const auto& row : study.json("out/trials.json"))
+    EXPECT_EQ(row["contact_force_mean_N"].is_number(), row["status"] == "done" && row["exit_code"] == 0) << row;
   for (const auto& row : study.json("out/comparisons.json")) {
     EXPECT_EQ(row["pairs"], 0);
     EXPECT_EQ(row["left_out"], 2);
