@@ -50,6 +50,7 @@ void addFormat(CLI::App& program, Context& context);
 void addMigrate(CLI::App& program, Context& context);
 void addGraph(CLI::App& program, Context& context);
 void addSchema(CLI::App& program, Context& context);
+void addPlot(CLI::App& program, Context& context);
 void addReport(CLI::App& program, Context& context);
 void addNew(CLI::App& program, Context& context);
 void addCompletion(CLI::App& program, Context& context);

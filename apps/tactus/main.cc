@@ -83,6 +83,7 @@ int runCommand(int argc, char** argv) {
   addGolden(app, context);
   addStudy(app, context);
   addPlugins(app, context);
+  addPlot(app, context);
   addReport(app, context);
   addExplain(app, context);
   addGraph(app, context);

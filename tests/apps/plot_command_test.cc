@@ -1,0 +1,60 @@
+// Columns of a log as a picture.
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/apps/program.h"
+
+namespace tactus::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct Logged {
+  TemporaryFolder folder;
+  std::string run = folder.file("run");
+  Logged() { EXPECT_EQ(tactus({"run", data("press.xml"), "--out", run}).exit_code, 0); }
+};
+
+TEST(PlotCommand, DrawsAPanelForEachArgument) {
+  const Logged logged;
+  const Outcome one = tactus({"plot", logged.run, "task/bow/error"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_THAT(one.out, StartsWith("<svg "));
+  EXPECT_THAT(one.out, HasSubstr(">task/bow/error<"));
+  EXPECT_THAT(one.out, HasSubstr(" 1100 260'"));
+  const Outcome two = tactus({"plot", logged.run, "q/hip,q/knee", "contact/mean_N", "--out", logged.folder.file("a.svg")});
+  EXPECT_EQ(two.exit_code, 0) << two.err;
+  const std::string svg = contentOf(logged.folder.file("a.svg"));
+  for (const char* text : {">q/hip<", ">q/knee<", ">contact/mean_N<", " 1100 520'", "#0072b2", "#e69f00"})
+    EXPECT_THAT(svg, HasSubstr(text));
+  EXPECT_NE(one.out, tactus({"plot", logged.run + "/log.csv", "q/hip"}).out);
+}
+
+TEST(PlotCommand, RefusesWhatItCannotDraw) {
+  const Logged logged;
+  const Outcome unknown = tactus({"plot", logged.run, "q/hipp"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("has no column 'q/hipp'; did you mean 'q/hip'?"));
+  EXPECT_EQ(tactus({"plot", logged.run, "q/hip", "--out", "a.gif"}).exit_code, 2);
+  EXPECT_EQ(tactus({"plot", logged.folder.file("none"), "q/hip"}).exit_code, 6);
+  Settings bare;
+  bare.environment = {"PATH=/nowhere"};
+  const Outcome png = tactus({"plot", logged.run, "q/hip", "--out", logged.folder.file("a.png")}, bare);
+  EXPECT_EQ(png.exit_code, 6);
+  EXPECT_THAT(png.err, HasSubstr("a PNG needs the program rsvg-convert (Debian: librsvg2-bin)"));
+}
+
+TEST(PlotCommand, MakesAPng) {
+  if (std::system("command -v rsvg-convert > /dev/null") != 0) GTEST_SKIP() << "rsvg-convert is not installed";
+  const Logged logged;
+  const Outcome outcome = tactus({"plot", logged.run, "q/hip", "--out", logged.folder.file("a.png")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(contentOf(logged.folder.file("a.png")), StartsWith("\x89PNG"));
+}
+
+}  // namespace
+}  // namespace tactus::testing
