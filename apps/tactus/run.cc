@@ -155,6 +155,7 @@ int run(const RunArguments& arguments, bool json) {
   const std::string label = arguments.stack.back_end.empty() ? session.backEndName() : arguments.stack.back_end;
   const std::string folder = folderOf(arguments, session, label);
   claimRunFolder(folder, session);
+  if (from) writeWhole(folder + "/" + from_file, dsl::stateToJson(*from));
 
   const Interrupt interrupt;
   Keepers keepers(session, folder, save_at);
@@ -163,7 +164,7 @@ int run(const RunArguments& arguments, bool json) {
   nlohmann::ordered_json description = describeRun(session, result);
   for (const std::string& warning : capsules.warnings()) description["warnings"].push_back(warning);
   description["capsules"] = capsules.files();
-  if (from) description["from"] = {{"file", arguments.from}, {"time", from->time}};
+  if (from) description["from"] = {{"file", arguments.from}, {"time", from->time}, {"set", arguments.stack.set}};
   description["states"] = keepers.states.files();
   const bool described = wrote([&] { writeJson(folder + "/run.json", description); });
   // A log that could not be written is no ground for pictures; `tactus report` makes them of what there is.

@@ -59,7 +59,7 @@ ordered_json describeFeatures(const Session& session) {
 ordered_json describeFaults(const Session& session, const runtime::LoopResult& result) {
   ordered_json faults = ordered_json::array();
   const bool in_time = result.ending == runtime::Ending::done || result.ending == runtime::Ending::interrupted;
-  const double end = in_time ? result.simulated - 1e-6 * session.controller().period() : INFINITY;
+  const double end = in_time ? session.time() - 1e-6 * session.controller().period() : INFINITY;
   const auto timeOf = [&](double time) {
     return time < end ? ordered_json(std::round(time * 1e9) / 1e9) : ordered_json();
   };
@@ -127,8 +127,8 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   if (!fs::is_empty(folder) && !isRunFolder(folder)) {
     throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
   }
-  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg", xray_file})
-    fs::remove(fs::path(folder) / picture);
+  for (const char* made : {"report.html", "contacts.svg", "touched_points.svg", xray_file, from_file})
+    fs::remove(fs::path(folder) / made);
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();

@@ -9,6 +9,7 @@
 namespace tactus::app {
 
 inline constexpr const char* run_format = "tactus-run/1";
+inline constexpr const char* from_file = "from.json";             ///< the state that the run went on from
 inline constexpr const char* status_running = "running";         ///< until the run ends; for ever when it is killed
 
 /// runs/<stack>-<back end>-seed<N>

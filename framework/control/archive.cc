@@ -12,6 +12,10 @@ std::vector<std::string> Archive::unclaimed(std::string_view prefix) const {
 
 void Archive::fail(const std::string& reason) const { throw StateError("state '" + path_ + "' " + reason); }
 
+void Archive::failRange(std::int64_t value, std::int64_t least, std::int64_t most) const {
+  fail("is " + std::to_string(value) + ", and must be from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
 void Archive::checkCount(std::size_t in_state, std::size_t wanted) const {
   if (in_state == wanted) return;
   const auto numbers = [](std::size_t n) { return std::to_string(n) + (n == 1 ? " number" : " numbers"); };

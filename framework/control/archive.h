@@ -34,6 +34,7 @@ class StateError : public std::runtime_error {
 ///   void Hold::doArchive(Archive& archive) {
 ///     archive("reference", reference_);
 ///     archive("random", random_);                                // a class with `archive(Archive&)` of its own
+///     archive.whole("next", next_, 0, count - 1);                // an index: a state may come from anywhere
 ///     archive.growing("points", points_);                        // a vector whose length is part of the state
 ///   }
 ///
@@ -54,6 +55,16 @@ class Archive {
   template <class T>
   void operator()(std::string_view name, T& value) {
     within(name, [&] { keep(value); });
+  }
+  /// A whole number that must be from `least` to `most`, an index for one; another one in the state is a StateError.
+  template <class Integer>
+  void whole(std::string_view name, Integer& value, std::int64_t least, std::int64_t most) {
+    within(name, [&] {
+      std::vector<std::int64_t> number{static_cast<std::int64_t>(value)};
+      if (!keepIntegers(number) || !restores()) return;
+      if (number[0] < least || number[0] > most) failRange(number[0], least, most);
+      value = static_cast<Integer>(number[0]);
+    });
   }
   /// A vector whose length may differ.  Restoring takes memory where its capacity does not suffice.
   template <class Vector>
@@ -106,6 +117,7 @@ class Archive {
   void keepSpan(Number* numbers, std::size_t count);
   const StateValue* find();
   [[noreturn]] void fail(const std::string& reason) const;
+  [[noreturn]] void failRange(std::int64_t value, std::int64_t least, std::int64_t most) const;
   void checkCount(std::size_t in_state, std::size_t wanted) const;
 
   State* into_;

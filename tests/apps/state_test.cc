@@ -149,6 +149,13 @@ TEST_F(BadState, OfAnotherWorld) {
   expectRefused(from(changed("\"plant/world/qd\": [", "\"plant/world/qd\": [0.0,")), 6, "state 'plant/world/qd' has ");
 }
 
+TEST_F(BadState, NumbersThatAreNone) {
+  expectRefused(from(changed("\"plant/world/qd\": [", "\"plant/world/qd\": [\"nan\",1.0,1.0],\n\"plant/world/old\": [")), 6,
+                "a place or speed is no number");
+  expectRefused(from(changed("\"plant/world/steps\": [400]", "\"plant/world/steps\": [-1]")), 6,
+                "state 'plant/world/steps' is -1, and must be from 0");
+}
+
 TEST_F(BadState, AsksForWhatCannotBe) {
   expectRefused(from(state(), {"--duration", "0.1"}), 2, "give a longer --duration");
   expectRefused(from(state(), {"--seed", "77"}), 2, "the state is of seed");
