@@ -155,6 +155,11 @@ std::vector<std::string> Session::restore(const dsl::SavedState& saved) {
     if (path.starts_with(world)) throw control::StateError("the state lacks '" + path + "'");
   for (const std::string& path : archive.unclaimed(world))
     throw control::StateError("this stack's world has no '" + path + "'");
+  const double period = controller_->period();
+  if (!(std::abs(saved.time - time()) < 1e-6 * period) || !(std::abs(time() - static_cast<double>(tick()) * period) < 1e-6 * period))
+    throw control::StateError("the state says that it is of t = " + control::formatNumber(saved.time) + " s, its world stands at " +
+                              control::formatNumber(time()) + " s; both are the time of a tick, a multiple of " +
+                              control::formatNumber(period) + " s");
   std::vector<std::string> notes;
   for (const std::string& part : partsOf(archive.missing()))
     notes.push_back(part + " is not in the state, or not all of it: it starts afresh");

@@ -66,6 +66,16 @@ class Archive {
       value = static_cast<Integer>(number[0]);
     });
   }
+  /// Numbers of Eigen's types that must be finite.
+  template <class Matrix>
+  void finite(std::string_view name, Matrix& numbers) {
+    within(name, [&] {
+      Matrix restored = numbers;
+      keep(restored);
+      if (restores() && !restored.allFinite()) fail("is not finite");
+      numbers = restored;
+    });
+  }
   /// A vector whose length may differ.  Restoring takes memory where its capacity does not suffice.
   template <class Vector>
   void growing(std::string_view name, Vector& values) {
@@ -116,6 +126,8 @@ class Archive {
   template <class Number>
   void keepSpan(Number* numbers, std::size_t count);
   const StateValue* find();
+  /// That the state holds about as much as it says: a size alone must not ask for all memory.
+  void checkGrowth(std::int64_t size) const;
   [[noreturn]] void fail(const std::string& reason) const;
   [[noreturn]] void failRange(std::int64_t value, std::int64_t least, std::int64_t most) const;
   void checkCount(std::size_t in_state, std::size_t wanted) const;
@@ -202,9 +214,10 @@ void Archive::keepGrowing(Vector& values) {
   bool known = true;
   within("size", [&] { known = keepIntegers(size); });
   if (!known) return;
-  constexpr std::int64_t most = 100'000'000;
-  if (size[0] < 0 || size[0] > most) fail("has a size of " + std::to_string(size[0]));
-  if (restores()) values.resize(static_cast<std::size_t>(size[0]));
+  if (restores()) {
+    checkGrowth(size[0]);
+    values.resize(static_cast<std::size_t>(size[0]));
+  }
   within("values", [&] { keepEach(values); });
 }
 
