@@ -13,6 +13,8 @@ using description::BodyReference;
 using description::TorqueFault;
 using description::TorqueFaultKind;
 
+constexpr double shortest = 1e-6;                                  // s, that a fault lasts
+
 class FaultReader {
  public:
   FaultReader(Stack& stack, Findings& findings) : stack_(stack), findings_(findings) {}
@@ -39,6 +41,9 @@ class FaultReader {
     window.from = element.values.real("from");
     if (!element.values.has("until")) return window;
     window.until = element.values.real("until");
+    if (window.until > window.from && window.until - window.from < shortest)
+      say(code::bad_value, element, "until",
+          "attribute 'until': a fault lasts at least " + formatNumber(shortest) + " s");
     if (!(window.until > window.from))
       say(code::bad_value, element, "until",
           "attribute 'until': " + formatNumber(window.until) + " s is not after " + formatNumber(window.from) +

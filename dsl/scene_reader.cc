@@ -93,6 +93,12 @@ class SceneReader {
         sayAt(element, "hold-until", code::attributes_clash,
               "attribute 'hold-until': a " + text + " object is held by nothing");
     }
+    const bool endless = std::any_of(object.object.primitives.begin(), object.object.primitives.end(), [](const auto& primitive) {
+      return std::isinf(primitive.shape->boundingRadius());
+    });
+    if (text != "fixed" && endless)
+      sayAt(element, "mobility", code::attributes_clash,
+            "attribute 'mobility': the object has a shape without end, which cannot move");
     const bool by_forces = text == "free" || text == "held", on_path = text == "held" || text == "moved";
     if (by_forces && !element.values.has("mass"))
       findings_.error(code::missing_attribute, *element.xml, "a " + text + " object needs the attribute 'mass'");

@@ -1,6 +1,7 @@
 #include "dsl/state_file.h"
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "dsl/json_node.h"
@@ -80,7 +81,12 @@ std::string stateToJson(const SavedState& saved) {
   return text + "\n}}\n";
 }
 
-SavedState readState(const std::string& file) { return parseState(runtime::readFile(file)); }
+SavedState readState(const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+    throw runtime::FileError(file, "is not a file");
+  return parseState(runtime::readFile(file));
+}
 
 SavedState parseState(const std::string& text) {
   const Json json = parseJson(text);

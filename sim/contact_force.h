@@ -119,8 +119,8 @@ class ContactForce {
     double stiffness = 0;                                          // N/m
     double t = std::nan("");                                       // of an interior point; NaN: none stands there
     void archive(control::Archive& archive) {
-      archive("bend", bend_W);
-      archive("twist", twist_W);
+      archive.finite("bend", bend_W);
+      archive.finite("twist", twist_W);
       archive("stiffness", stiffness);
       archive("t", t);
     }

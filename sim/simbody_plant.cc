@@ -65,6 +65,8 @@ description::ContactMaterial together(const description::ContactMaterial& a, con
           std::max(a.rolling, b.rolling)};
 }
 
+constexpr std::int64_t most_steps = 1'000'000'000'000'000;         // of a state
+
 constexpr const char* usual_causes =
     "Usual causes: damping gains too high for the joint's inertia at this control rate (keep d·dt/I below 0.5), a mass "
     "matrix of the controller that lacks the rotor inertia, delay, or a start inside an object.";
@@ -133,7 +135,7 @@ class SimbodyPlant::Implementation {
   /// Simbody's own state follows from what is archived here.
   void archive(control::Archive& archive) {
     archive.within("world", [&] {
-      archive("steps", steps_);
+      archive.whole("steps", steps_, 0, most_steps);
       archive("q", q_);
       archive("qd", qd_);
       archive("free-bodies", free_);
@@ -143,6 +145,7 @@ class SimbodyPlant::Implementation {
     });
     for (control::FaultRecord& record : records_) archive("fault/" + record.name, record);
     if (!archive.restores()) return;
+    checkRestored();
     noteFaults();
     chooseMasses();
     realize();
@@ -608,6 +611,20 @@ class SimbodyPlant::Implementation {
                               usual_causes);
   }
 
+  void checkRestored() const {
+    constexpr double rounding = 1e-6;
+    bool usable = q_.allFinite() && qd_.allFinite();
+    for (const FreeState& body : free_)
+      usable = usable && body.place.allFinite() && body.linear_W.allFinite() && body.angular_W.allFinite() &&
+               std::abs(body.rotation.norm() - 1) < rounding;
+    if (!usable) throw control::StateError("the state of the world is none: a place or speed is no number, or a rotation none");
+    try {
+      checkSpeed();
+    } catch (const runtime::PlantError& error) {
+      throw control::StateError(error.what());
+    }
+  }
+
   void fillSensed() {
     sensed_.time = time();
     sensed_.q = q_;
@@ -666,7 +683,13 @@ const control::Sensed& SimbodyPlant::sense() const { return implementation_->sen
 
 std::span<const control::ObjectMotion> SimbodyPlant::objects() const { return implementation_->objects(); }
 
-void SimbodyPlant::archive(control::Archive& archive) { implementation_->archive(archive); }
+void SimbodyPlant::archive(control::Archive& archive) {
+  try {
+    implementation_->archive(archive);
+  } catch (const SimTK::Exception::Base& error) {
+    throw control::StateError("Simbody refuses the state: " + std::string(error.getMessage()));
+  }
+}
 void SimbodyPlant::faults(std::vector<const control::FaultRecord*>& records) const {
   implementation_->faults(records);
 }

@@ -113,12 +113,15 @@ void Contacts::LinkTouch::archive(Archive& archive) {
   archive("point", point_L);
   archive("normal", normal_L);
   archive("recent", recent);
-  archive("recent-next", recent_next);
+  archive.whole("recent-next", recent_next, 0, kRecentPoints - 1);
 }
 
 void Contacts::doArchive(Archive& archive) {
   archive("links", links_);
   archive("points", points_);
+  for (const TouchedPoint& point : points_.points)
+    if (point.frame < 0 || point.frame >= static_cast<int>(links_.size()))
+      throw StateError("a touched point of the state is of link " + std::to_string(point.frame) + ", which is not there");
 }
 
 void Contacts::accumulateRecords(const Tick& tick) {

@@ -205,7 +205,7 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
 
 void FollowSurface::doArchive(Archive& archive) {
   archive("normal", normal_W_);
-  archive("key", key_index_);
+  archive.whole("key", key_index_, 0, static_cast<std::int64_t>(keys_W_.size()));
   archive("nearest", nearest_);
   archive("progress-time", progress_time_);
   archive("key-started", key_started_);

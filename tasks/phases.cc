@@ -131,7 +131,7 @@ void Phases::doUpdate(const Tick& tick) {
 
 void Phases::doArchive(Archive& archive) {
   archive("phases", phases_);
-  archive("current", current_);
+  archive.whole("current", current_, 0, static_cast<std::int64_t>(phases_.size()) - 1);
   archive("entered", entered_);
   archive("last-update", last_update_);
   archive("time-in-phase", time_in_phase_);

@@ -53,6 +53,17 @@ std::string firstDifference(const std::string& logged, const std::string& again)
   return "";
 }
 
+/// A run that went on from a state does so again.
+void goOnFrom(const std::string& file, Session& session) {
+  try {
+    session.restore(dsl::readState(file));
+  } catch (const dsl::JsonFileError& error) {
+    throw runtime::FileError(file, error.what());
+  } catch (const control::StateError& error) {
+    throw runtime::FileError(file, error.what());
+  }
+}
+
 /// The tick that is held from `at` on; the end of the run is its last tick.
 long tickAt(double at, const dsl::Stack& stack, double period) {
   const long ticks = std::lround(stack.run.duration / period);
@@ -74,6 +85,10 @@ int explainTick(const ExplainTickArguments& arguments, bool json) {
 
   const Interrupt interrupt;
   Session session(std::move(stack), program.registry());
+  const std::string from = arguments.stack.file + "/" + from_file;
+  if (of_run && fs::exists(from)) goOnFrom(from, session);
+  if (tick < session.tick())
+    throw UsageError("--at " + rounded(arguments.at) + " is before the run, which goes on from " + timeText(session.time()) + " s");
   const runtime::TemporaryFolder again;
   const auto recorder = session.recordInto(again.path);
   runtime::LoopResult result;

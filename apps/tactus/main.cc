@@ -1,3 +1,4 @@
+#include <csignal>
 #include <iostream>
 
 #include "apps/tactus/command.h"
@@ -123,6 +124,7 @@ int runCommand(int argc, char** argv) {
 }  // namespace tactus::app
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);                                   // a file that may grow no more is an error like a full disk
   const int code = tactus::app::runCommand(argc, argv);
   // Data that did not arrive is a failure, whatever was done for it.
   if (std::cout.flush()) return code;

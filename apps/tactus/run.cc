@@ -154,7 +154,8 @@ int run(const RunArguments& arguments, bool json) {
   const std::vector<double> save_at = saveTimes(arguments, session);
   const std::string label = arguments.stack.back_end.empty() ? session.backEndName() : arguments.stack.back_end;
   const std::string folder = folderOf(arguments, session, label);
-  claimRunFolder(folder, session);
+  const FolderClaim claim = claimRunFolder(folder, session);
+  if (from) writeWhole(folder + "/" + from_file, dsl::stateToJson(*from));
 
   const Interrupt interrupt;
   Keepers keepers(session, folder, save_at);
@@ -163,7 +164,7 @@ int run(const RunArguments& arguments, bool json) {
   nlohmann::ordered_json description = describeRun(session, result);
   for (const std::string& warning : capsules.warnings()) description["warnings"].push_back(warning);
   description["capsules"] = capsules.files();
-  if (from) description["from"] = {{"file", arguments.from}, {"time", from->time}};
+  if (from) description["from"] = {{"file", arguments.from}, {"time", from->time}, {"set", arguments.stack.set}};
   description["states"] = keepers.states.files();
   const bool described = wrote([&] { writeJson(folder + "/run.json", description); });
   // A log that could not be written is no ground for pictures; `tactus report` makes them of what there is.
@@ -205,9 +206,11 @@ void addRun(CLI::App& program, Context& context) {
   command->add_option("--out", arguments->out, "Run folder; runs/<stack>-<back end>-seed<N> without it")
       ->type_name("DIR");
   command->add_option("--save-at", arguments->save_at, "Save the whole state at these times, as state-<time>.json")
-      ->type_name("SECONDS,…");
+      ->type_name("SECONDS,…")
+      ->check(notEmpty());
   command->add_option("--from", arguments->from, "Go on from a saved state, to the bit; with --set and --backend: branch")
-      ->type_name("STATE");
+      ->type_name("STATE")
+      ->check(notEmpty());
   command->add_flag("--json", context.json, "Print run.json on stdout instead of the summary");
   command->footer(
       R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml, xray.json and report.html in the

@@ -1,5 +1,10 @@
 #include "apps/tactus/run_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 
@@ -59,7 +64,7 @@ ordered_json describeFeatures(const Session& session) {
 ordered_json describeFaults(const Session& session, const runtime::LoopResult& result) {
   ordered_json faults = ordered_json::array();
   const bool in_time = result.ending == runtime::Ending::done || result.ending == runtime::Ending::interrupted;
-  const double end = in_time ? result.simulated - 1e-6 * session.controller().period() : INFINITY;
+  const double end = in_time ? session.time() - 1e-6 * session.controller().period() : INFINITY;
   const auto timeOf = [&](double time) {
     return time < end ? ordered_json(std::round(time * 1e9) / 1e9) : ordered_json();
   };
@@ -119,7 +124,20 @@ std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_en
   return "runs/" + stack.name + "-" + label + "-seed" + std::to_string(stack.run.seed);
 }
 
-void claimRunFolder(const std::string& folder, const Session& session) {
+FolderClaim::FolderClaim(const std::string& folder)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  // A file system without locks lets every run pass.
+  if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(descriptor_);
+    throw runtime::FileError(folder, "another run is writing into it; wait for its end, or give another folder with --out");
+  }
+}
+
+FolderClaim::~FolderClaim() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+FolderClaim claimRunFolder(const std::string& folder, const Session& session) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw runtime::FileError(folder, "cannot be made a folder: " + error.message());
@@ -127,8 +145,9 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   if (!fs::is_empty(folder) && !isRunFolder(folder)) {
     throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
   }
-  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg", xray_file})
-    fs::remove(fs::path(folder) / picture);
+  FolderClaim claim(folder);
+  for (const char* made : {"report.html", "contacts.svg", "touched_points.svg", xray_file, from_file})
+    fs::remove(fs::path(folder) / made);
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
@@ -136,6 +155,7 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   }
   for (const fs::path& file : old) fs::remove(file);
   writeJson(folder + "/run.json", describeStart(session, status_running));
+  return claim;
 }
 
 ordered_json describeStart(const Session& session, const std::string& status) {
@@ -196,7 +216,7 @@ std::vector<std::string> faultNotes(const ordered_json& run) {
   for (const ordered_json& fault : run["faults"]) {
     const ordered_json &began = fault["began_s"], &ended = fault["ended_s"];
     notes.push_back("fault '" + fault["name"].get<std::string>() + "' (" + fault["kind"].get<std::string>() + ") " +
-                    (began.is_null()   ? "never struck: the run ended before"
+                    (began.is_null()   ? "never struck: its time is not that of a tick of this run"
                      : ended.is_null() ? "struck from " + at(began) + " to the end"
                                        : "struck from " + at(began) + " until " + at(ended)));
   }

@@ -37,13 +37,18 @@ std::unique_ptr<runtime::SensingPlant> makePlant(const dsl::Stack& stack, const 
 
 void expectSame(const char* what, const std::vector<std::string>& in_state, const std::vector<std::string>& here) {
   if (in_state == here) return;
-  const auto list = [](const std::vector<std::string>& names) {
+  const auto missingIn = [](const std::vector<std::string>& names, const std::vector<std::string>& of) {
     std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text.empty() ? "none" : text;
+    for (const std::string& name : of)
+      if (std::find(names.begin(), names.end(), name) == names.end()) text += (text.empty() ? "" : ", ") + name;
+    return text;
   };
-  throw control::StateError(std::string("the state has other ") + what + " than this stack: " + list(in_state) +
-                            " instead of " + list(here));
+  const std::string only_here = missingIn(in_state, here), only_there = missingIn(here, in_state);
+  std::string message = std::string("the state has other ") + what + " than this stack";
+  if (!only_there.empty()) message += "; only in the state: " + only_there;
+  if (!only_here.empty()) message += "; only here: " + only_here;
+  if (only_here.empty() && only_there.empty()) message += ": the same in another order";
+  throw control::StateError(message);
 }
 
 /// "controller/task/hold/excess" is of "controller/task/hold"; each once.
@@ -150,6 +155,11 @@ std::vector<std::string> Session::restore(const dsl::SavedState& saved) {
     if (path.starts_with(world)) throw control::StateError("the state lacks '" + path + "'");
   for (const std::string& path : archive.unclaimed(world))
     throw control::StateError("this stack's world has no '" + path + "'");
+  const double period = controller_->period();
+  if (!(std::abs(saved.time - time()) < 1e-6 * period) || !(std::abs(time() - static_cast<double>(tick()) * period) < 1e-6 * period))
+    throw control::StateError("the state says that it is of t = " + control::formatNumber(saved.time) + " s, its world stands at " +
+                              control::formatNumber(time()) + " s; both are the time of a tick, a multiple of " +
+                              control::formatNumber(period) + " s");
   std::vector<std::string> notes;
   for (const std::string& part : partsOf(archive.missing()))
     notes.push_back(part + " is not in the state, or not all of it: it starts afresh");

@@ -43,6 +43,10 @@ CLI::Validator timeOfTick() {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator notEmpty() {
+  return CLI::Validator([](std::string& text) -> std::string { return text.empty() ? "it is empty" : ""; }, "");
+}
+
 CLI::Validator seed() {
   const auto check = [](std::string& text) -> std::string {
     std::int32_t value = 0;                                        // as far as a stack's seed reaches

@@ -24,6 +24,9 @@ CLI::Validator simulatedTime();
 /// Accepts the time of a tick, s: from 0.
 CLI::Validator timeOfTick();
 
+/// Accepts a text that is not empty, as an unset variable of a shell is.
+CLI::Validator notEmpty();
+
 /// Accepts a seed.
 CLI::Validator seed();
 

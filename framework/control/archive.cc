@@ -12,6 +12,19 @@ std::vector<std::string> Archive::unclaimed(std::string_view prefix) const {
 
 void Archive::fail(const std::string& reason) const { throw StateError("state '" + path_ + "' " + reason); }
 
+void Archive::failRange(std::int64_t value, std::int64_t least, std::int64_t most) const {
+  fail("is " + std::to_string(value) + ", and must be from " + std::to_string(least) + " to " + std::to_string(most));
+}
+
+void Archive::checkGrowth(std::int64_t size) const {
+  std::size_t held = from_->size();                                // of classes: an entry each at least
+  const auto values = from_->find(path_ + "/values");
+  if (values != from_->end())
+    held = std::visit([](const auto& stored) { return stored.size(); }, values->second);
+  if (size < 0 || static_cast<std::uint64_t>(size) > held)
+    fail("has a size of " + std::to_string(size) + ", and holds no more than " + std::to_string(held));
+}
+
 void Archive::checkCount(std::size_t in_state, std::size_t wanted) const {
   if (in_state == wanted) return;
   const auto numbers = [](std::size_t n) { return std::to_string(n) + (n == 1 ? " number" : " numbers"); };

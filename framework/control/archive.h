@@ -34,6 +34,7 @@ class StateError : public std::runtime_error {
 ///   void Hold::doArchive(Archive& archive) {
 ///     archive("reference", reference_);
 ///     archive("random", random_);                                // a class with `archive(Archive&)` of its own
+///     archive.whole("next", next_, 0, count - 1);                // an index: a state may come from anywhere
 ///     archive.growing("points", points_);                        // a vector whose length is part of the state
 ///   }
 ///
@@ -54,6 +55,26 @@ class Archive {
   template <class T>
   void operator()(std::string_view name, T& value) {
     within(name, [&] { keep(value); });
+  }
+  /// A whole number that must be from `least` to `most`, an index for one; another one in the state is a StateError.
+  template <class Integer>
+  void whole(std::string_view name, Integer& value, std::int64_t least, std::int64_t most) {
+    within(name, [&] {
+      std::vector<std::int64_t> number{static_cast<std::int64_t>(value)};
+      if (!keepIntegers(number) || !restores()) return;
+      if (number[0] < least || number[0] > most) failRange(number[0], least, most);
+      value = static_cast<Integer>(number[0]);
+    });
+  }
+  /// Numbers of Eigen's types that must be finite.
+  template <class Matrix>
+  void finite(std::string_view name, Matrix& numbers) {
+    within(name, [&] {
+      Matrix restored = numbers;
+      keep(restored);
+      if (restores() && !restored.allFinite()) fail("is not finite");
+      numbers = restored;
+    });
   }
   /// A vector whose length may differ.  Restoring takes memory where its capacity does not suffice.
   template <class Vector>
@@ -105,7 +126,10 @@ class Archive {
   template <class Number>
   void keepSpan(Number* numbers, std::size_t count);
   const StateValue* find();
+  /// That the state holds about as much as it says: a size alone must not ask for all memory.
+  void checkGrowth(std::int64_t size) const;
   [[noreturn]] void fail(const std::string& reason) const;
+  [[noreturn]] void failRange(std::int64_t value, std::int64_t least, std::int64_t most) const;
   void checkCount(std::size_t in_state, std::size_t wanted) const;
 
   State* into_;
@@ -190,9 +214,10 @@ void Archive::keepGrowing(Vector& values) {
   bool known = true;
   within("size", [&] { known = keepIntegers(size); });
   if (!known) return;
-  constexpr std::int64_t most = 100'000'000;
-  if (size[0] < 0 || size[0] > most) fail("has a size of " + std::to_string(size[0]));
-  if (restores()) values.resize(static_cast<std::size_t>(size[0]));
+  if (restores()) {
+    checkGrowth(size[0]);
+    values.resize(static_cast<std::size_t>(size[0]));
+  }
   within("values", [&] { keepEach(values); });
 }
 

@@ -389,7 +389,7 @@ void Controller::archive(Archive& archive) {
   }
   archive.growing("switched-off", switched_off_);
   archive("torque", shaper_);
-  archive("last-solved", last_solved_);
+  archive.finite("last-solved", last_solved_);
   archive("unsolved-for", unsolved_for_);
   archive("bore-weight", bore_weight_);
   WarmStart warm = back_end_->warmStart();

@@ -90,8 +90,8 @@ bool SensingGuard::checkContacts(const Sensed& raw) {
 void SensingGuard::archive(Archive& archive) {
   archive("has-time", has_time_);
   archive("time", known_.time);
-  archive("q", known_.q);
-  archive("qd", known_.qd);
+  archive.finite("q", known_.q);
+  archive.finite("qd", known_.qd);
   archive("never-sensed", never_sensed_);
   std::vector<char> ever_good;
   std::vector<double> lost_for;

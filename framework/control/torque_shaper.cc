@@ -46,8 +46,8 @@ void TorqueShaper::apply(const Eigen::VectorXd& wanted) {
 }
 
 void TorqueShaper::archive(Archive& archive) {
-  archive("torque", torque_);
-  archive("difference", difference_);
+  archive.finite("torque", torque_);
+  archive.finite("difference", difference_);
   archive("ramp", ramp_);
   archive("left", left_);
   archive("begins", begins_);

@@ -35,8 +35,12 @@ std::vector<Feeler> Shape::doFeelers() const {
     const bool is_new = std::none_of(feelers.begin(), feelers.end(), [&](const Feeler& other) {
       return (other.from - point).norm() < 1e-3 * bounding_radius_;
     });
-    if (is_new) feelers.push_back({point, point, 0, true, 0.125});
+    if (is_new) feelers.push_back({point, point});
   }
+  // A corner bears alone; where a round side lies, some of many do.
+  constexpr std::size_t corners = 24;
+  if (feelers.size() > corners)
+    for (Feeler& feeler : feelers) feeler.share = 0.5;
   return feelers;
 }
 

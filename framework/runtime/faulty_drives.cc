@@ -52,8 +52,10 @@ void FaultyDrives::archive(control::Archive& archive) {
 
 void FaultyDrives::Fault::archive(control::Archive& archive) {
   archive("record", record);
-  archive("kept", kept);
+  archive.finite("kept", kept);
   archive("past", past);
+  for (const Eigen::VectorXd& torque : past)
+    if (!torque.allFinite()) throw control::StateError("a torque that is under way in the state is not finite");
   archive("ticks", ticks);
 }
 

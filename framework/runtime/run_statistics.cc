@@ -99,7 +99,7 @@ std::vector<std::string> RunStatistics::warnings() const {
     const std::string others = std::to_string(fast_joints_.size() - 1);
     warnings.push_back("joint '" + joint.name + "' was faster than its velocity limit" + first(joint) +
                        std::to_string(joint.ticks) + " ticks" +
-                       (fast_joints_.size() > 1 ? "; and " + others + " more" : ""));
+                       (fast_joints_.size() > 1 ? "; and so were " + others + " more" : ""));
   }
   const std::string of_all = " of " + std::to_string(ticks_) + " ticks";
   if (late > 0) warnings.push_back("the back end missed its deadline in " + std::to_string(late) + of_all);

@@ -140,6 +140,8 @@ void Fault::doSense(const Sensed& truth, Sensed& felt, Eigen::Ref<Eigen::VectorX
 void Fault::doArchive(Archive& archive) {
   archive("started", started_);
   archive.growing("held", held_);
+  for (const Held& held : held_)
+    if (!strikes(held.record)) throw StateError("a contact that is stuck in the state is of a link that is not");
   archive("held-q", held_q_);
   archive("held-readings", held_readings_);
   archive("past", past_);

@@ -69,6 +69,8 @@ Layout::Layout(const control::ElementValues& values, int links)
     kind_ = Kind::counts;
     rows_ = static_cast<int>(std::lround(values.numbers("counts")[0]));
     columns_ = static_cast<int>(std::lround(values.numbers("counts")[1]));
+    if (values.numbers("counts")[0] * values.numbers("counts")[1] > static_cast<double>(kMostTaxels))
+      throw ElementError("counts", "a link carries at most " + std::to_string(kMostTaxels) + " taxels");
     if (rows_ != values.numbers("counts")[0] || columns_ != values.numbers("counts")[1] || rows_ < 1 || columns_ < 1)
       throw ElementError("counts", "rows and columns are whole numbers of at least 1");
   }

@@ -27,8 +27,9 @@ Eigen::Ref<Eigen::VectorXd> Sampler::take(double time) {
 void Sampler::archive(control::Archive& archive) {
   archive("samples", samples_);
   archive("times", times_);
-  archive("last", last_);
-  archive("told", told_);
+  const auto most = static_cast<std::int64_t>(times_.size()) - 1;
+  archive.whole("last", last_, -1, most);
+  archive.whole("told", told_, -1, most);
   archive("next", next_);
   archive("interval", interval_);
 }
@@ -36,7 +37,7 @@ void Sampler::archive(control::Archive& archive) {
 bool Sampler::tell(double time) {
   const int before = told_;
   if (told_ < 0) told_ = 0;
-  while (told_ != last_) {
+  for (std::size_t i = 0; i < times_.size() && told_ != last_; ++i) {
     const int next = (told_ + 1) % static_cast<int>(times_.size());
     if (times_[static_cast<std::size_t>(next)] > time - delay_ + tolerance_) break;
     told_ = next;

@@ -176,6 +176,9 @@ void Skin::doArchive(Archive& archive) {
   archive("response", *response_);
   archive("sampler", *sampler_);
   archive.growing("contacts", contacts_);
+  for (const LinkContact& contact : contacts_)
+    if (patchOf(contact.link) < 0)
+      throw StateError("a contact of the state is of link " + std::to_string(contact.link) + ", which has no taxels");
 }
 
 int Skin::patchOf(int link) const {

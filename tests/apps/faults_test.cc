@@ -217,7 +217,7 @@ TEST(Faults, ThatBeginAfterTheRunAreToldToo) {
   const Finger finger("<torque-loss name=\"late\" from=\"3\"/>");
   finger.endsInItsTime();
   EXPECT_TRUE(finger.run["faults"][0]["began_s"].is_null());
-  EXPECT_THAT(finger.outcome.err, HasSubstr("note: fault 'late' (torque-loss) never struck: the run ended before"));
+  EXPECT_THAT(finger.outcome.err, HasSubstr("note: fault 'late' (torque-loss) never struck: its time is not that of a tick of this run"));
 }
 
 TEST(Faults, RepeatToTheByte) {

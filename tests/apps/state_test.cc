@@ -86,6 +86,31 @@ TEST(State, ABranchGoesAnotherWay) {
   EXPECT_THAT(back_end.err, HasSubstr("controller/back-end/null-space of the state is not in this stack"));
 }
 
+TEST(State, ABranchIsExplained) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run(data("press.xml"), folder.file("run"), {"--duration", "0.3", "--save-at", "0.1"}).exit_code, 0);
+  const Outcome branch = run(data("press.xml"), folder.file("branch"),
+                             {"--from", folder.file("run/state-0.1.json"), "--duration", "0.3", "--set", "press=0.7"});
+  ASSERT_EQ(branch.exit_code, 0) << branch.err;
+  EXPECT_EQ(nlohmann::json::parse(contentOf(folder.file("branch/run.json")))["from"]["set"][0], "press=0.7");
+  const Outcome explained = tactus({"explain", folder.file("branch"), "--at", "0.25"});
+  EXPECT_EQ(explained.exit_code, 0) << explained.err;
+  EXPECT_THAT(explained.err, HasSubstr("its log is met to the byte"));
+  EXPECT_EQ(tactus({"explain", folder.file("branch"), "--at", "0.05"}).exit_code, 2);
+}
+
+TEST(State, TwoRunsDoNotShareAFolder) {
+  const TemporaryFolder folder;
+  RunningProgram first({"run", table, "--duration", "1000", "--out", folder.file("run")});
+  for (int i = 0; i < 400 && !fs::exists(folder.file("run/log.csv")); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const Outcome second = run(data("press.xml"), folder.file("run"), {});
+  EXPECT_EQ(second.exit_code, 6);
+  EXPECT_THAT(second.err, HasSubstr("another run is writing into it"));
+  first.send(SIGINT);
+  EXPECT_EQ(first.wait().exit_code, 130);
+}
+
 TEST(State, AnInterruptedRunLeavesItsState) {
   const TemporaryFolder folder;
   RunningProgram program({"run", table, "--duration", "1000", "--out", folder.file("run")});
@@ -147,6 +172,23 @@ TEST_F(BadState, OfAnotherWorld) {
   expectRefused(from(changed("\"joints\": [\"", "\"joints\": [\"other_")), 6, "the state has other joints than this stack");
   expectRefused(from(changed("\"plant/world/q\"", "\"plant/world/x\"")), 6, "the state lacks 'plant/world/q'");
   expectRefused(from(changed("\"plant/world/qd\": [", "\"plant/world/qd\": [0.0,")), 6, "state 'plant/world/qd' has ");
+}
+
+TEST_F(BadState, NumbersThatAreNone) {
+  expectRefused(from(changed("\"plant/world/qd\": [", "\"plant/world/qd\": [\"nan\",1.0,1.0],\n\"plant/world/old\": [")), 6,
+                "a place or speed is no number");
+  expectRefused(from(changed("\"plant/world/steps\": [400]", "\"plant/world/steps\": [-1]")), 6,
+                "state 'plant/world/steps' is -1, and must be from 0");
+}
+
+TEST_F(BadState, SizesIndicesAndTimesThatCannotBe) {
+  const char* size = "\"controller/signal/touch/points/time/size\": [";
+  expectRefused(from(changed(size, "\"controller/signal/touch/points/time/size\": [9999999], \"x\": [")), 6,
+                "has a size of 9999999, and holds no more than");
+  expectRefused(from(changed("recent-next\": [", "recent-next\": [-1], \"x\": [")), 6, "is -1, and must be from 0 to 15");
+  expectRefused(from(changed("\"time\": 0.1", "\"time\": 0.05")), 6, "its world stands at 0.1 s");
+  expectRefused(from("/dev/zero"), 6, "is not a file");
+  expectRefused(from(""), 2, "--from: it is empty");
 }
 
 TEST_F(BadState, AsksForWhatCannotBe) {

@@ -182,6 +182,21 @@ TEST(Archive, OtherTypesAreRefused) {
   EXPECT_EQ(real, 5);
 }
 
+TEST(Archive, AnIndexStaysInItsRange) {
+  int index = 1;
+  for (const std::int64_t wrong : {-1, 3}) {
+    const State state{{"it", std::vector<std::int64_t>{wrong}}};
+    Archive archive = Archive::restoring(state);
+    try {
+      archive.whole("it", index, 0, 2);
+      ADD_FAILURE();
+    } catch (const StateError& error) {
+      EXPECT_EQ(error.what(), "state 'it' is " + std::to_string(wrong) + ", and must be from 0 to 2");
+    }
+  }
+  EXPECT_EQ(index, 1);
+}
+
 TEST(Archive, AnAbsurdSizeIsRefused) {
   std::vector<double> list;
   const State state{{"it/size", std::vector<std::int64_t>{std::numeric_limits<std::int64_t>::max()}},

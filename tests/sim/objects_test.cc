@@ -7,6 +7,7 @@
 
 #include <numbers>
 
+#include "framework/geometry/cone.h"
 #include "framework/geometry/ellipsoid.h"
 #include "framework/geometry/extrusion.h"
 #include "framework/geometry/revolution.h"
@@ -127,6 +128,25 @@ TEST_P(Rest, UnderALoadDoesNotCreep) {
     EXPECT_LT(speedOf(plant.objects()[1], 0.05), 0.5e-3);
     EXPECT_LT(before.norm(), 0.06) << "it slid at first";
     RecordProperty("creep_um_per_s", std::to_string(1e6 * creep));
+  }
+}
+
+/// What is known by points of its surface alone gives way on a plane hardly more than one spring would.
+TEST(Object, SinksHardlyDeeperThanOnASpring) {
+  const double mass = 0.3;
+  const std::vector<Eigen::Vector2d> square{{-0.02, -0.02}, {0.02, -0.02}, {0.02, 0.02}, {-0.02, 0.02}};
+  const std::pair<std::shared_ptr<const geometry::Shape>, double> solids[] = {
+      {std::make_shared<geometry::Extrusion>(square, 0.04), 0.02},
+      {std::make_shared<geometry::Ellipsoid>(Vector3d(0.05, 0.05, 0.02)), 0.02},
+      {std::make_shared<geometry::Torus>(0.04, 0.01, 2 * std::numbers::pi), 0.01},
+      {std::make_shared<geometry::Cone>(0.03, 0.01, 0.06), 0.03}};
+  for (const auto& [shape, height] : solids) {
+    description::Object thing = free("thing", at(0, 0, height), shape, mass, Vector3d::Constant(1e-4));
+    thing.material.dissipation = 4;
+    SimbodyPlant plant = plantOf(scene({ground(), thing}));
+    plant.advance(nothing, 3);
+    const double stiffness = 0.5 * description::ContactMaterial().stiffness;
+    EXPECT_LT(height - plant.objects()[1].pose.translation().z(), 1.5 * mass * g / stiffness);
   }
 }
 
