@@ -127,7 +127,8 @@ void claimRunFolder(const std::string& folder, const Session& session) {
   if (!fs::is_empty(folder) && !isRunFolder(folder)) {
     throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
   }
-  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg", xray_file})
+  for (const char* picture : {"report.html", "contacts.svg", "touched_points.svg", "scene.json", "replay.csv",
+                              "replay_contacts.csv", xray_file})
     fs::remove(fs::path(folder) / picture);
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder)) {
