@@ -13,7 +13,7 @@ inline constexpr size_t most_replay_characters = 16'000'000;
 
 /// What the page of a run replays and plots.  Numbers are little-endian float32 in base64, rows one after another.
 ///
-///     title, wanted_force: N or null
+///     title
 ///     scene: scene.json, or null
 ///     frames: {columns, data}            of replay.csv
 ///     contacts: {links, on, data}        rows: frame, index into links, index into on, x, y, z, force_x, force_y, force_z

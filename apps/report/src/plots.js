@@ -73,6 +73,7 @@ export class Plots {
       data.push(Array.from(time.values, () => plot.wanted));
     }
     const range = rangeOf(alike);
+    const decades = (_, splits) => splits.map((value) => (Math.abs(Math.log10(value) % 1) < 1e-6 ? value : null));
     const axis = {stroke: ink, grid: {stroke: rule, width: 1}, ticks: {stroke: rule, width: 1}, font: '11px system-ui'};
     const chart = new uPlot({
       width: 400,
@@ -82,6 +83,7 @@ export class Plots {
       scales: {x: {time: false, range: () => [this.clock.start, this.clock.end]},
         y: {distr: plot.scale === 'log' ? 3 : 1, range: () => range}},
       axes: [{...axis, size: 22, gap: 2}, {...axis, size: 46, gap: 3, space: 22,
+        ...(plot.scale === 'log' ? {filter: decades, grid: {...axis.grid, filter: decades}} : {}),
         values: (_, splits) => splits.map((value) => (value == null ? '' : text(value)))}],
       series: [{}, ...series],
       padding: [6, 8, 0, 0],

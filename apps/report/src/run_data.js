@@ -24,7 +24,6 @@ export class RunData {
     this.scene = json.scene;
     this.notes = json.notes;
     this.features = json.features;
-    this.wantedForce = json.wanted_force;
     this.columns = json.frames.columns;
     this.frames = floats(json.frames.data);
     this.width = this.columns.length;

@@ -160,7 +160,7 @@ export class View {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
     geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
-    this.touched = new THREE.Points(geometry, new THREE.PointsMaterial({size: 6 * window.devicePixelRatio,
+    this.touched = new THREE.Points(geometry, new THREE.PointsMaterial({size: 4 * window.devicePixelRatio,
       sizeAttenuation: false, vertexColors: true, map: roundSprite(), alphaTest: 0.5}));
     this.touched.frustumCulled = false;
     this.world.add(this.touched);
@@ -244,7 +244,7 @@ export class View {
     const target = box.getCenter(new THREE.Vector3());
     const radius = box.getSize(new THREE.Vector3()).length() / 2;
     const narrow = Math.min(1, this.camera.aspect);
-    const distance = 0.92 * radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2)) / narrow;
+    const distance = 0.72 * radius / Math.sin(THREE.MathUtils.degToRad(this.camera.fov / 2)) / narrow;
     this.cameraName = name;
     this.camera.position.copy(target).addScaledVector(new THREE.Vector3(...cameras[name]).normalize(), distance);
     this.controls.target.copy(target);
@@ -319,12 +319,19 @@ export class View {
   draw() {
     this.renderer.render(this.world, this.camera);
     const {clientWidth: width, clientHeight: height} = this.host;
-    for (const {mesh, label} of this.marks) {
+    const places = this.marks.map(({mesh, label}) => {
       const at = mesh.position.clone().project(this.camera);
       label.hidden = !mesh.visible || at.z > 1;
-      label.style.transform = `translate(${((at.x + 1) / 2 * width + 9).toFixed(1)}px, ` +
-        `${((1 - at.y) / 2 * height - 8).toFixed(1)}px)`;
-    }
+      return {label, x: (at.x + 1) / 2 * width + 12, y: (1 - at.y) / 2 * height - 8};
+    });
+    // From the top down, each below those that it would cover.
+    places.sort((a, b) => a.y - b.y);
+    places.forEach((place, i) => {
+      for (const above of places.slice(0, i)) {
+        if (Math.abs(above.x - place.x) < 130 && place.y - above.y < 15) place.y = above.y + 15;
+      }
+      place.label.style.transform = `translate(${place.x.toFixed(1)}px, ${place.y.toFixed(1)}px)`;
+    });
   }
 }
 
