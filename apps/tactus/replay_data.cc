@@ -273,7 +273,7 @@ void noteSimplified(const JsonPlace& scene, ordered_json& notes) {
 }  // namespace
 
 ordered_json replayData(const ReplaySource& source, size_t most_characters) {
-  ordered_json data{{"title", source.run.at("stack").text() + ", " + source.run.at("backend").text()},
+  ordered_json data{{"title", source.title},
                     {"scene", nullptr}};
   ordered_json notes = ordered_json::array();
   const std::string scene_path = source.folder + "/scene.json";

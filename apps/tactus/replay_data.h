@@ -23,6 +23,7 @@ inline constexpr size_t most_replay_characters = 16'000'000;
 ///     notes: what was left out, a sentence each
 struct ReplaySource {
   std::string folder;
+  std::string title;
   JsonPlace run;                                                   ///< run.json
   const runtime::CsvTable& log;
   const runtime::CsvTable& touched;

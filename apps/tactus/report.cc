@@ -238,11 +238,17 @@ std::string xrays(const RunData& data) {
   return html.empty() ? "" : "<section>" + html + "</section>\n";
 }
 
+/// "runs/one/" is "one".
+std::string nameOf(const std::string& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 /// The replay of one run, or of two on one clock.
 std::string replay(const std::vector<const RunData*>& runs) {
   std::string html = "<section id='replay'><noscript>The replay needs JavaScript.</noscript></section>\n";
   for (const RunData* data : runs)
-    html += replayScript(replayData({data->folder, data->run(), data->log, data->touched},
+    html += replayScript(replayData({data->folder, nameOf(data->folder), data->run(), data->log, data->touched},
                                     most_replay_characters / runs.size()));
   return html;
 }
@@ -263,8 +269,8 @@ std::string page(const RunData& data, const std::string& contacts, const std::st
 }
 
 std::string titleOf(const RunData& data) {
-  return data.run().at("stack").text() + " with " + data.run().at("backend").text() + ", seed " +
-         number(data.run().at("seed"), 10);
+  return nameOf(data.folder) + ": " + data.run().at("stack").text() + " with " + data.run().at("backend").text() +
+         ", seed " + number(data.run().at("seed"), 10);
 }
 
 std::string pageOfTwo(const RunData& one, const RunData& other) {
@@ -273,13 +279,7 @@ std::string pageOfTwo(const RunData& one, const RunData& other) {
     html += "<div><h2>" + escaped(titleOf(*data)) + "</h2>" + warnings(*data) + metricsTable(data->run()) +
             facts(data->run()) + "</div>";
   html += "</section>\n";
-  return htmlPage(titleOf(one) + " beside " + titleOf(other), withScript(html), std::string(replayPage().style));
-}
-
-/// "runs/one/" is "one".
-std::string nameOf(const std::string& folder) {
-  const fs::path path = fs::absolute(folder).lexically_normal();
-  return (path.has_filename() ? path : path.parent_path()).filename().string();
+  return htmlPage(nameOf(one.folder) + " beside " + nameOf(other.folder), withScript(html), std::string(replayPage().style));
 }
 
 struct ReportArguments {

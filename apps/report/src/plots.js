@@ -9,7 +9,7 @@ const rule = '#e8e8e3';
 function text(value) {
   if (value == null || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(1);
+  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(1).replace('.0e', 'e');
   return String(Number(value.toPrecision(3)));
 }
 
@@ -73,7 +73,8 @@ export class Plots {
       data.push(Array.from(time.values, () => plot.wanted));
     }
     const range = rangeOf(alike);
-    const decades = (_, splits) => splits.map((value) => (Math.abs(Math.log10(value) % 1) < 1e-6 ? value : null));
+    const step = Math.ceil(Math.log10(range[1] / range[0]) / 4);
+    const decades = (_, splits) => splits.map((value) => (Math.abs(Math.log10(value) / step % 1) < 1e-6 ? value : null));
     const axis = {stroke: ink, grid: {stroke: rule, width: 1}, ticks: {stroke: rule, width: 1}, font: '11px system-ui'};
     const chart = new uPlot({
       width: 400,
@@ -83,7 +84,7 @@ export class Plots {
       scales: {x: {time: false, range: () => [this.clock.start, this.clock.end]},
         y: {distr: plot.scale === 'log' ? 3 : 1, range: () => range}},
       axes: [{...axis, size: 22, gap: 2}, {...axis, size: 46, gap: 3, space: 22,
-        ...(plot.scale === 'log' ? {filter: decades, grid: {...axis.grid, filter: decades}} : {}),
+        ...(plot.scale === 'log' ? {filter: decades, grid: {...axis.grid, filter: decades}, ticks: {...axis.ticks, filter: decades}} : {}),
         values: (_, splits) => splits.map((value) => (value == null ? '' : text(value)))}],
       series: [{}, ...series],
       padding: [6, 8, 0, 0],

@@ -206,7 +206,7 @@ export class View {
       hand.expandByPoint(new THREE.Vector3(...this.run.contacts.subarray(row + 3, row + 6)));
     }
     if (hand.isEmpty()) hand.copy(whole);
-    else hand.expandByScalar(0.1);
+    else hand.expandByScalar(0.03);
     if (whole.isEmpty()) whole.set(new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 1));
     this.boxes = {whole, hand: hand.isEmpty() ? whole : hand};
   }
