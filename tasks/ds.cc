@@ -115,4 +115,6 @@ bool DynamicalSystem::displacement(const dynamics::DynamicsCache& from, const dy
 
 void DynamicalSystem::columns(std::vector<LogColumn>& columns) const { columns.push_back({"tank_J", &tank_}); }
 
+void DynamicalSystem::marks(std::vector<Mark>& marks) const { marks.push_back({"target", &target_W_}); }
+
 }  // namespace tactus::tasks

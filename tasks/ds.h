@@ -22,6 +22,7 @@ class DynamicalSystem final : public control::Task {
   bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                     Eigen::Ref<Eigen::VectorXd> dx) const override;
   void columns(std::vector<control::LogColumn>& columns) const override;
+  void marks(std::vector<control::Mark>& marks) const override;
   double tank() const { return tank_; }                            ///< J
 
  private:

@@ -99,6 +99,7 @@ FollowSurface::FollowSurface(const BuildContext& context)
   const std::vector<double>& along = context.values.numbers("along");
   for (std::size_t i = 0; i + 2 < along.size(); i += 3) keys_W_.emplace_back(along[i], along[i + 1], along[i + 2]);
   if (keys_W_.empty()) throw ElementError("along", "along needs at least one key position 'x y z'");
+  key_W_ = reference_W_ = keys_W_.front();
   const Eigen::Vector3d normal_axis = direction(context, "normal-axis");
   const Eigen::Vector3d forward_axis = direction(context, "forward-axis");
   if (std::abs(normal_axis.dot(forward_axis)) > 1e-6) {
@@ -183,6 +184,8 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   distance_ = way.norm();
   const Eigen::Vector3d x_e = distance_ > near_ ? Eigen::Vector3d(way * (reach_ / distance_))
                                                 : Eigen::Vector3d(way * (reach_ / near_));
+  key_W_ = key();
+  reference_W_ = p_W + x_e;
   advanceKey(tick.time, distance_);
 
   const auto across = [&](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - normal_W_ * normal_W_.dot(v)); };
@@ -225,6 +228,11 @@ void FollowSurface::columns(std::vector<LogColumn>& columns) const {
   columns.push_back({"key", &key_number_});
   columns.push_back({"keys_passed", &keys_passed_});
   columns.push_back({"keys_given_up", &keys_given_up_});
+}
+
+void FollowSurface::marks(std::vector<Mark>& marks) const {
+  marks.push_back({"key", &key_W_});
+  marks.push_back({"reference", &reference_W_});
 }
 
 void FollowSurface::metrics(std::vector<Metric>& metrics) const {

@@ -29,6 +29,7 @@ class FollowSurface final : public control::Task {
   bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                     Eigen::Ref<Eigen::VectorXd> dx) const override;
   void columns(std::vector<control::LogColumn>& columns) const override;
+  void marks(std::vector<control::Mark>& marks) const override;
   void metrics(std::vector<control::Metric>& metrics) const override;
 
  private:
@@ -57,6 +58,7 @@ class FollowSurface final : public control::Task {
   double keys_passed_ = 0, keys_given_up_ = 0, key_number_ = 0;
   double last_key_time_ = 0;
   double distance_ = 0;
+  Eigen::Vector3d key_W_, reference_W_;                            ///< p_f, p_r of this tick
 };
 
 }  // namespace tactus::tasks

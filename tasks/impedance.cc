@@ -76,6 +76,8 @@ void Impedance::doUpdate(const Tick& tick, TickTask& rows) {
   error_ = p_e.norm();
 }
 
+void Impedance::marks(std::vector<Mark>& marks) const { marks.push_back({"reference", &position_W_}); }
+
 void Impedance::doArchive(Archive& archive) {
   archive("has-position", has_position_);
   archive("has-orientation", has_orientation_);

@@ -16,6 +16,7 @@ class Impedance final : public control::Task {
 
   bool displacement(const dynamics::DynamicsCache& from, const dynamics::DynamicsCache& to,
                     Eigen::Ref<Eigen::VectorXd> dx) const override;
+  void marks(std::vector<control::Mark>& marks) const override;
 
  private:
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;

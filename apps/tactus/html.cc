@@ -23,9 +23,9 @@ td.task { padding-left: 18px; } li { font-size: 14px; margin: 3px 0; }
 
 }  // namespace
 
-std::string htmlPage(const std::string& title, const std::string& body) {
+std::string htmlPage(const std::string& title, const std::string& body, const std::string& more_style) {
   return "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>" + escaped(title) + "</title><style>" +
-         style + "</style></head><body><main>\n<h1>" + escaped(title) + "</h1>\n" + body + "</main></body></html>\n";
+         style + more_style + "</style></head><body><main>\n<h1>" + escaped(title) + "</h1>\n" + body + "</main></body></html>\n";
 }
 
 }  // namespace tactus::app

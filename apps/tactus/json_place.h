@@ -23,11 +23,12 @@ class JsonPlace {
   std::optional<double> number() const;
   std::string text() const;                                        ///< required
   std::string text(const std::string& otherwise) const { return exists() ? text() : otherwise; }
+  /// Throws FileError: something else was expected here.
+  [[noreturn]] void refuse(const std::string& expected) const;
 
  private:
   JsonPlace(const JsonPlace& parent, const std::string& step, const nlohmann::ordered_json* value)
       : file_(parent.file_), where_(parent.where_ + "/" + step), value_(value) {}
-  [[noreturn]] void refuse(const std::string& expected) const;
 
   std::string file_;
   std::string where_;                                              ///< "/ticks/total"

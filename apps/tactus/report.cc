@@ -4,22 +4,28 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "apps/tactus/command.h"
 #include "apps/tactus/html.h"
 #include "apps/tactus/json_place.h"
 #include "apps/tactus/plot.h"
+#include "apps/tactus/replay_data.h"
+#include "apps/tactus/replay_page.h"
 #include "apps/tactus/run_folder.h"
+#include "apps/tactus/screenshot.h"
 #include "apps/tactus/targets.h"
 #include "apps/tactus/text.h"
+#include "apps/tactus/touched_cloud.h"
 #include "apps/tactus/xray_view.h"
+#include "framework/control/element_values.h"
 #include "framework/runtime/csv_table.h"
 #include "framework/runtime/file_error.h"
-#include "framework/runtime/percentile.h"
 
 namespace tactus::app {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using runtime::CsvTable;
 
@@ -29,6 +35,7 @@ constexpr const char* grey = "#9a9a94";
 
 /// What the report is made of.  A run that was cut off may have left no tables.
 struct RunData {
+  std::string folder;
   std::string file;
   ordered_json json;
   bool cut_off = false;
@@ -44,6 +51,7 @@ struct RunData {
 
 RunData readRunFolder(const std::string& folder) {
   RunData data;
+  data.folder = folder;
   data.file = folder + "/run.json";
   data.json = readJson(data.file);
   if (data.run().at("format").text("") != run_format) {
@@ -85,26 +93,6 @@ std::string drawContacts(const RunData& data) {
   return svgDocument(1100, 560, drawContactNumber(data, {0, 0, 1100, 240}) + drawForces(data, {0, 240, 1100, 320}));
 }
 
-/// Touched points with their height (mm) above the lowest plane: the second percentile of z, so that a few points
-/// that press deeper do not move it.
-struct Cloud {
-  std::vector<double> x, y, height_mm;
-  double plane = 0;                                                ///< m
-  double height_max = 1;                                           ///< mm, of the colour scale
-};
-
-Cloud touchedCloud(const CsvTable& touched) {
-  Cloud cloud;
-  cloud.x = touched.numbers("x");
-  cloud.y = touched.numbers("y");
-  const std::vector<double> z = touched.numbers("z");
-  if (z.empty()) return cloud;
-  cloud.plane = runtime::percentile(z, 0.02);
-  for (const double height : z) cloud.height_mm.push_back((height - cloud.plane) * 1000);
-  cloud.height_max = std::max(1.0, runtime::percentile(cloud.height_mm, 0.999));
-  return cloud;
-}
-
 /// Where features were found and where they really are, seen along one axis of the world.
 std::vector<Marker> featureMarkers(const RunData& data, size_t horizontal, size_t vertical, double plane) {
   std::vector<Marker> markers;
@@ -125,7 +113,7 @@ std::vector<Marker> featureMarkers(const RunData& data, size_t horizontal, size_
 
 std::string drawTouchedPoints(const RunData& data) {
   if (data.touched.rows() == 0) return svgDocument(1100, 60, note("Nothing was touched.", {0, 0, 1100, 60}));
-  const Cloud cloud = touchedCloud(data.touched);
+  const TouchedCloud cloud = touchedCloud(data.touched);
   const auto view = [&](const std::string& title, const std::string& x_label, const std::string& y_label,
                         const std::vector<double>& x, const std::vector<double>& y, size_t horizontal,
                         size_t vertical) {
@@ -250,15 +238,79 @@ std::string xrays(const RunData& data) {
   return html.empty() ? "" : "<section>" + html + "</section>\n";
 }
 
+/// "runs/one/" is "one".
+std::string nameOf(const std::string& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+/// The replay of one run, or of two on one clock.
+std::string replay(const std::vector<const RunData*>& runs) {
+  std::string html = "<section id='replay'><noscript>The replay needs JavaScript.</noscript></section>\n";
+  for (const RunData* data : runs)
+    html += replayScript(replayData({data->folder, nameOf(data->folder), data->run(), data->log, data->touched},
+                                    most_replay_characters / runs.size()));
+  return html;
+}
+
+std::string withScript(const std::string& body) {
+  return body + "<script>" + std::string(replayPage().script) + "</script>\n";
+}
+
 std::string page(const RunData& data, const std::string& contacts, const std::string& touched) {
-  std::string html = warnings(data) + faultsTable(data.run());
+  std::string html = warnings(data) + replay({&data}) + faultsTable(data.run());
   html += "<section class='columns'><div>" + metricsTable(data.run()) + "</div><div>" + facts(data.run()) +
           "</div></section>\n";
   html += "<section>" + contacts + "</section>\n";
   if (data.touched.rows() > 0) html += "<section>" + touched + "</section>\n";
   if (data.log.rows() > 0) html += "<section>" + drawTaskErrors(data) + "</section>\n";
   html += xrays(data);
-  return htmlPage(data.run().at("stack").text(), html);
+  return htmlPage(data.run().at("stack").text(), withScript(html), std::string(replayPage().style));
+}
+
+std::string titleOf(const RunData& data) {
+  return nameOf(data.folder) + ": " + data.run().at("stack").text() + " with " + data.run().at("backend").text() +
+         ", seed " + number(data.run().at("seed"), 10);
+}
+
+std::string pageOfTwo(const RunData& one, const RunData& other) {
+  std::string html = replay({&one, &other}) + "<section class='columns'>";
+  for (const RunData* data : {&one, &other})
+    html += "<div><h2>" + escaped(titleOf(*data)) + "</h2>" + warnings(*data) + metricsTable(data->run()) +
+            facts(data->run()) + "</div>";
+  html += "</section>\n";
+  return htmlPage(nameOf(one.folder) + " beside " + nameOf(other.folder), withScript(html), std::string(replayPage().style));
+}
+
+struct ReportArguments {
+  std::string folder;
+  std::string beside;                                              ///< another run's folder
+  std::string png;                                                 ///< folder, or a file that ends in .png
+  std::string camera = "overview";
+  std::optional<double> at;                                        ///< s
+};
+
+/// A file gets the scene, a folder all pictures.
+void writePictures(const ReportArguments& arguments, const std::string& page) {
+  constexpr double at_first = 0.6;                                 // of the run: most are busy then
+  const RunData data = readRunFolder(arguments.folder);
+  const double at = arguments.at.value_or(at_first * data.run().at("duration_s").number().value_or(0));
+  const std::string scene =
+      "#figure=scene&at=" + control::formatNumber(at) + "&camera=" + arguments.camera;
+  const int width = arguments.beside.empty() ? 1200 : 1600;
+  const auto take = [&](const std::string& address, const std::string& png, PictureSize size) {
+    takeScreenshot(address, png, size);
+    std::cerr << png << "\n";
+  };
+  if (arguments.png.ends_with(".png")) return take(fileAddress(page) + scene, arguments.png, {width, 800});
+  std::error_code error;
+  fs::create_directories(arguments.png, error);
+  if (error) throw runtime::FileError(arguments.png, "cannot be made a folder: " + error.message());
+  take(fileAddress(page) + scene, arguments.png + "/scene.png", {width, 800});
+  take(fileAddress(page) + "#figure=plots&at=" + control::formatNumber(at), arguments.png + "/plots.png", {900, 1000});
+  if (!arguments.beside.empty()) return;
+  for (const std::string name : {"contacts", "touched_points"})
+    take(fileAddress(arguments.folder + "/" + name + ".svg"), arguments.png + "/" + name + ".png", {1100, 560});
 }
 
 }  // namespace
@@ -272,15 +324,42 @@ void writeReport(const std::string& folder) {
   runtime::writeFile(folder + "/report.html", page(data, contacts, touched));
 }
 
+std::string writeReportOfTwo(const std::string& folder, const std::string& other) {
+  const std::string file = folder + "/beside-" + nameOf(other) + ".html";
+  runtime::writeFile(file, pageOfTwo(readRunFolder(folder), readRunFolder(other)));
+  return file;
+}
+
 void addReport(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("report", "Make the report of a run folder again");
-  const auto folder = std::make_shared<std::string>();
-  command->add_option("RUN", *folder, "Folder of a run")->required()->type_name("");
-  command->footer("Examples:\n  tactus report runs/explore-table-null-space-seed1");
+  const auto arguments = std::make_shared<ReportArguments>();
+  command->add_option("RUN", arguments->folder, "Folder of a run")->required()->type_name("");
+  command->add_option("--beside", arguments->beside, "Another run's folder: both side by side, on one clock")
+      ->type_name("RUN");
+  command
+      ->add_option("--png", arguments->png,
+                   "Pictures for papers: a folder for all of them, or a file .png for the scene; needs Chromium")
+      ->type_name("DIR|FILE");
+  command->add_option("--at", arguments->at, "Time of the scene in --png, s; 0.6 of the run without it")
+      ->type_name("SECONDS");
+  command->add_option("--camera", arguments->camera, "Of the scene in --png: overview, front, side, top, hand")
+      ->check(CLI::IsMember({"overview", "front", "side", "top", "hand"}))
+      ->type_name("NAME");
+  command->footer(R"(report.html replays the run: robot, objects, forces, touched points, what tasks steer for, and plots that
+follow.  It is one file, which opens without a network.
+
+Examples:
+  tactus report runs/explore-table-null-space-seed1
+  tactus report runs/soft --beside runs/hard
+  tactus report runs/soft --png figures
+  tactus report runs/soft --png scene.png --at 12.5 --camera hand)");
   command->callback([=, &context] {
     context.action = [=] {
-      writeReport(*folder);
-      std::cerr << *folder << "/report.html\n";
+      std::string file = arguments->folder + "/report.html";
+      if (arguments->beside.empty()) writeReport(arguments->folder);
+      else file = writeReportOfTwo(arguments->folder, arguments->beside);
+      std::cerr << file << "\n";
+      if (!arguments->png.empty()) writePictures(*arguments, file);
       return exit_done;
     };
   });

@@ -7,6 +7,7 @@
 #include "apps/tactus/progress.h"
 #include "apps/tactus/report.h"
 #include "apps/tactus/run_folder.h"
+#include "apps/tactus/scene_file.h"
 #include "apps/tactus/stack_arguments.h"
 #include "apps/tactus/state_keeper.h"
 #include "apps/tactus/text.h"
@@ -14,6 +15,7 @@
 #include "dsl/read_stack.h"
 #include "framework/runtime/file_error.h"
 #include "framework/runtime/part_error.h"
+#include "framework/runtime/replay_recorder.h"
 
 namespace tactus::app {
 namespace {
@@ -109,18 +111,21 @@ runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers
   runtime::LoopResult result;
   try {
     runtime::writeFile(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
+    writeScene(folder + "/scene.json", session);
     const auto recorder = session.recordInto(folder);
+    runtime::ReplayRecorder replay(folder, session.stack().robot, session.scene(), session.tick());
     const std::vector<control::Observer*> own = session.startRecorders(folder);
     {
       Progress progress(session.stack().run.duration);
-      std::vector<control::Observer*> observers{&keepers.states, recorder.get(), &keepers.capsules, &keepers.xrays,
-                                                &progress};
+      std::vector<control::Observer*> observers{&keepers.states,   recorder.get(), &replay,
+                                                &keepers.capsules, &keepers.xrays, &progress};
       observers.insert(observers.end(), own.begin(), own.end());
       result = session.run(observers, stop);
     }
     if (result.ending == runtime::Ending::file_error) return result;
     if (result.ending == runtime::Ending::interrupted || keepers.states.isDue()) keepers.states.save();
     recorder->close();
+    replay.close();
     for (control::Observer* one : own) one->close();
   } catch (const runtime::PartError& error) {
     result.ending = runtime::Ending::part_error;
@@ -213,8 +218,8 @@ void addRun(CLI::App& program, Context& context) {
       ->check(notEmpty());
   command->add_flag("--json", context.json, "Print run.json on stdout instead of the summary");
   command->footer(
-      R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml, xray.json and report.html in the
-run folder, and the first 5 ticks that failed or came late as capsule-<tick>.json, which `tactus solve`
+      R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml, xray.json, what a replay needs
+(scene.json, replay.csv, replay_contacts.csv) and report.html in the run folder, and the first 5 ticks that failed or came late as capsule-<tick>.json, which `tactus solve`
 solves again to the bit.  A run that is interrupted leaves its state too, and `--from` goes on with it.
 
 Examples:

@@ -146,7 +146,8 @@ FolderClaim claimRunFolder(const std::string& folder, const Session& session) {
     throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
   }
   FolderClaim claim(folder);
-  for (const char* made : {"report.html", "contacts.svg", "touched_points.svg", xray_file, from_file})
+  for (const char* made : {"report.html", "contacts.svg", "touched_points.svg", "scene.json", "replay.csv",
+                           "replay_contacts.csv", xray_file, from_file})
     fs::remove(fs::path(folder) / made);
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder)) {

@@ -68,6 +68,9 @@ class Session {
   std::map<std::string, std::string> taskPlaces() const;
 
   const dsl::Stack& stack() const { return stack_; }
+  /// Of the run's seed.
+  const description::Scene& scene() const { return scene_; }
+  const runtime::Plant& plant() const { return *plant_; }
   control::Controller& controller() { return *controller_; }
   const control::Controller& controller() const { return *controller_; }
   const runtime::RunStatistics& statistics() const { return statistics_; }

@@ -34,6 +34,8 @@ class Task {
   }
   /// More numbers for the log than the error; pointers stay valid.
   virtual void columns(std::vector<LogColumn>&) const {}
+  /// What it steers for, for a replay of the run; pointers stay valid.
+  virtual void marks(std::vector<Mark>&) const {}
   /// Figures of the whole run.
   virtual void metrics(std::vector<Metric>&) const {}
   /// What it carries from one tick to the next.

@@ -19,6 +19,12 @@ struct LogColumn {
   const double* value = nullptr;
 };
 
+/// A point that a task steers for, in the world, for people to see.  `position_W` lives as long as its owner.
+struct Mark {
+  std::string name;                                                ///< "reference", "target"
+  const Eigen::Vector3d* position_W = nullptr;                     ///< m
+};
+
 /// A figure of the whole run, told at its end.
 struct Metric {
   std::string name;                                                ///< with its unit as suffix: "contact_force_mean_N"

@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/geometry/surface.h"
+
 namespace tactus::geometry {
 namespace {
 
@@ -56,6 +58,16 @@ std::optional<Vector3d> Compound::doSupport(const Vector3d& n) const {
     if (!farthest || point.dot(n) > farthest->dot(n)) farthest = point;
   }
   return farthest;
+}
+
+TriangleMesh Compound::doSurface() const {
+  std::vector<PosedShape> posed;
+  for (const Part& part : parts_) {
+    posed.push_back({part.shape});
+    posed.back().pose.linear() = part.R;
+    posed.back().pose.translation() = part.p;
+  }
+  return surfaceOf(posed);
 }
 
 }  // namespace tactus::geometry

@@ -31,6 +31,7 @@ class Compound final : public Shape {
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   /// None when a part has none.
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
 
   std::vector<Part> parts_;
 };

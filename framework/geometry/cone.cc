@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/geometry/lengths.h"
+#include "framework/geometry/surface.h"
 
 namespace tactus::geometry {
 namespace {
@@ -60,6 +61,11 @@ std::optional<Vector3d> Cone::doSupport(const Vector3d& n) const {
   const double at_bottom = bottom_radius_ * sideways - 0.5 * length_ * n.z();
   const double radius = at_top > at_bottom ? top_radius_ : bottom_radius_;
   return Vector3d(radius / sideways * n.x(), radius / sideways * n.y(), (at_top > at_bottom ? 0.5 : -0.5) * length_);
+}
+
+TriangleMesh Cone::doSurface() const {
+  const double half = 0.5 * length_;
+  return lathe({{0, -half}, {bottom_radius_, -half}, {top_radius_, half}, {0, half}});
 }
 
 }  // namespace tactus::geometry

@@ -18,6 +18,7 @@ class Cone final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
 
   double bottom_radius_;
   double top_radius_;

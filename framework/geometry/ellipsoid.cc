@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "framework/geometry/lengths.h"
+#include "framework/geometry/surface.h"
 
 namespace tactus::geometry {
 namespace {
@@ -81,6 +83,12 @@ SignedDistance Ellipsoid::doDistance(const Vector3d& p) const {
 std::optional<Vector3d> Ellipsoid::doSupport(const Vector3d& n) const {
   const Vector3d stretched = radii_.cwiseProduct(n);
   return Vector3d(radii_.cwiseProduct(stretched) / stretched.norm());
+}
+
+TriangleMesh Ellipsoid::doSurface() const {
+  TriangleMesh mesh = lathe(arc(Eigen::Vector2d::Zero(), 1, -std::numbers::pi / 2, std::numbers::pi / 2));
+  for (Vector3d& vertex : mesh.vertices) vertex = vertex.cwiseProduct(radii_);
+  return mesh;
 }
 
 }  // namespace tactus::geometry

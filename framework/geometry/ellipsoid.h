@@ -18,6 +18,7 @@ class Ellipsoid final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
 
   Eigen::Vector3d radii_;
   std::array<int, 3> axis_;                                        // from the longest to the shortest

@@ -89,4 +89,27 @@ std::vector<Piece> Extrusion::doPieces() const {
   return pieces;
 }
 
+TriangleMesh Extrusion::doSurface() const {
+  TriangleMesh mesh;
+  const auto corner = [&](const Vector2d& p, double side) {
+    mesh.vertices.emplace_back(p.x(), p.y(), 0.5 * side * length_);
+    return static_cast<int>(mesh.vertices.size()) - 1;
+  };
+  const std::vector<Vector2d>& corners = outline_.corners();
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Vector2d &here = corners[i], &next = corners[(i + 1) % corners.size()];
+    const int a = corner(here, -1), b = corner(next, -1), c = corner(next, 1), d = corner(here, 1);
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  }
+  for (const ConvexSet& part : convexParts(corners).parts)
+    for (size_t i = 1; i + 1 < part.corners().size(); ++i)
+      for (const double side : {-1.0, 1.0}) {
+        const int a = corner(part.corners()[0], side), b = corner(part.corners()[i], side),
+                  c = corner(part.corners()[i + 1], side);
+        mesh.triangles.push_back(side > 0 ? std::array{a, b, c} : std::array{a, c, b});
+      }
+  return welded(mesh);
+}
+
 }  // namespace tactus::geometry

@@ -21,6 +21,7 @@ class Extrusion final : public Shape {
   Extrusion(Outline outline, double length);
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
   /// Prisms over the convex parts of its outline.
   std::vector<Piece> doPieces() const override;
 

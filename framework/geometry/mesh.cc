@@ -76,11 +76,11 @@ DistanceGrid::Sample sample(const Grids& grids, std::size_t finest, const Triang
 }  // namespace
 
 struct Mesh::Parts {
-  Parts(const TriangleMesh& mesh, double cell) : vertices(mesh.vertices), search(mesh) {
+  Parts(const TriangleMesh& mesh, double cell) : triangles(mesh), search(mesh) {
     const Box box = boxOf(mesh);
     grids = gridsOver(box, finestCell(box.high - box.low, cell), search);
     measure();
-    for (const Vector3d& vertex : vertices) radius = std::max(radius, vertex.norm());
+    for (const Vector3d& vertex : mesh.vertices) radius = std::max(radius, vertex.norm());
   }
 
   void measure() {
@@ -108,7 +108,7 @@ struct Mesh::Parts {
     }
   }
 
-  std::vector<Vector3d> vertices;
+  TriangleMesh triangles;
   TriangleSearch search;
   Grids grids;
   Errors errors;
@@ -119,7 +119,7 @@ Mesh::Mesh(const TriangleMesh& triangles, double cell) : Mesh(Parts(triangles, c
 
 Mesh::Mesh(Parts parts)
     : Shape(parts.radius, false, parts.errors.everywhere),
-      vertices_(std::move(parts.vertices)),
+      triangles_(std::move(parts.triangles)),
       search_(std::move(parts.search)),
       grids_(std::move(parts.grids)),
       errors_(parts.errors) {}
@@ -132,8 +132,10 @@ SignedDistance Mesh::doDistance(const Vector3d& p) const {
 }
 
 std::optional<Vector3d> Mesh::doSupport(const Vector3d& n) const {
-  return *std::max_element(vertices_.begin(), vertices_.end(),
+  return *std::max_element(triangles_.vertices.begin(), triangles_.vertices.end(),
                            [&](const Vector3d& a, const Vector3d& b) { return a.dot(n) < b.dot(n); });
 }
+
+TriangleMesh Mesh::doSurface() const { return triangles_; }
 
 }  // namespace tactus::geometry

@@ -39,8 +39,9 @@ class Mesh final : public Shape {
   explicit Mesh(Parts parts);
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
 
-  std::vector<Eigen::Vector3d> vertices_;
+  TriangleMesh triangles_;
   TriangleSearch search_;
   std::vector<DistanceGrid> grids_;                                // from the finest
   Errors errors_;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "framework/geometry/lengths.h"
+#include "framework/geometry/surface.h"
 
 namespace tactus::geometry {
 namespace {
@@ -154,6 +155,41 @@ std::optional<Vector3d> Capsule::doSupport(const Vector3d& n) const {
 std::vector<Feeler> Capsule::doFeelers() const {
   const Vector3d half(0, 0, length_ / 2);
   return {{-half, half, radius_}};
+}
+
+TriangleMesh Plane::doSurface() const {
+  constexpr double half = 2;
+  return {{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+TriangleMesh Box::doSurface() const {
+  TriangleMesh mesh;
+  for (int corner = 0; corner < 8; ++corner)
+    mesh.vertices.push_back(
+        0.5 * size_.cwiseProduct(Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1)));
+  for (const auto& [a, b, c, d] : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2},
+                                   {1, 3, 7, 5}}) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  }
+  return mesh;
+}
+
+TriangleMesh Sphere::doSurface() const {
+  return lathe(arc(Eigen::Vector2d::Zero(), radius(), -std::numbers::pi / 2, std::numbers::pi / 2));
+}
+
+TriangleMesh Cylinder::doSurface() const {
+  const double half = 0.5 * length_;
+  return lathe({{0, -half}, {radius_, -half}, {radius_, half}, {0, half}});
+}
+
+TriangleMesh Capsule::doSurface() const {
+  const double half = 0.5 * length_, quarter = std::numbers::pi / 2;
+  std::vector<Eigen::Vector2d> profile = arc({0, -half}, radius_, -quarter, 0);
+  const std::vector<Eigen::Vector2d> top = arc({0, half}, radius_, 0, quarter);
+  profile.insert(profile.end(), top.begin(), top.end());
+  return lathe(profile);
 }
 
 }  // namespace tactus::geometry

@@ -14,6 +14,7 @@ class Plane final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
 };
 
 class Box final : public Shape {
@@ -25,6 +26,7 @@ class Box final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
   /// Its 8 corners, the insides of its 12 edges, so that edge meets edge, and 4 points inside each face, on which a
   /// box stands that is flush with another one.
   std::vector<Feeler> doFeelers() const override;
@@ -39,6 +41,7 @@ class Sphere final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
   /// Itself.
   std::vector<Feeler> doFeelers() const override;
 };
@@ -54,6 +57,7 @@ class Cylinder final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
   /// Two rims of 24 points, each with a third of the stiffness: rolling on its side it rises and falls by
   /// r (1 − cos 7.5°) < 0.009 r, which slows it down; and 6 points inside each end, on which it stands flush on another one.
   std::vector<Feeler> doFeelers() const override;
@@ -72,6 +76,7 @@ class Capsule final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
   /// Itself.
   std::vector<Feeler> doFeelers() const override;
   double radius_;

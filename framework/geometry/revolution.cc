@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/geometry/convex_parts.h"
+#include "framework/geometry/surface.h"
 
 namespace tactus::geometry {
 
@@ -118,5 +119,7 @@ std::vector<Piece> Revolution::doPieces() const {
   }
   return pieces;
 }
+
+TriangleMesh Revolution::doSurface() const { return lathe(profile_.corners()); }
 
 }  // namespace tactus::geometry

@@ -20,6 +20,7 @@ class Revolution final : public Shape {
   explicit Revolution(Outline profile);
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
   /// What the convex parts of its profile sweep.  One that is not convex as a solid (a ring, a funnel) is told twice, by
   /// its near side and by the one across the axis, so that a ball sits on the mouth of a cup.
   std::vector<Piece> doPieces() const override;

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "framework/geometry/surface.h"
+
 namespace tactus::geometry {
 
 Shape::Shape(double bounding_radius, bool convex, double error)
@@ -45,5 +47,7 @@ std::vector<Feeler> Shape::doFeelers() const {
 }
 
 std::vector<Piece> Shape::doPieces() const { return {}; }
+
+TriangleMesh Shape::doSurface() const { return std::isinf(bounding_radius_) ? TriangleMesh{} : surfaceNets(*this); }
 
 }  // namespace tactus::geometry

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "framework/geometry/triangle_mesh.h"
+
 /// What objects are made of: shapes as signed distances, for the plant, for estimators, for anybody who asks where a
 /// surface is.
 namespace tactus::geometry {
@@ -50,6 +52,10 @@ class Shape {
   /// The pieces in which a ball touches it apart, in a hollow on each side; none: it is one piece.
   std::vector<Piece> pieces() const { return doPieces(); }
 
+  /// Triangles that look outwards, for pictures: flat sides as they are, round ones in small steps; of a shape without
+  /// end the part around its origin.
+  TriangleMesh surface() const { return doSurface(); }
+
   /// Radius of a sphere about the shape's origin that holds all of it, m; infinite for one without end.
   double boundingRadius() const { return bounding_radius_; }
   /// Whether the segment between any two of its points lies inside: the distance is then a convex function of p.
@@ -70,6 +76,8 @@ class Shape {
   /// farthest in directions spread evenly over the sphere, of another those nearest to points around it.
   virtual std::vector<Feeler> doFeelers() const;
   virtual std::vector<Piece> doPieces() const;
+  /// As it stands: by surfaceNets, which cuts edges off; of a shape without end, nothing.
+  virtual TriangleMesh doSurface() const;
 
   double bounding_radius_;
   bool convex_;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "framework/geometry/lengths.h"
+#include "framework/geometry/surface.h"
 
 namespace tactus::geometry {
 
@@ -81,6 +82,13 @@ std::vector<Piece> Torus::doPieces() const {
   if (!isRing(angle_)) return {};
   const auto ring = std::make_shared<Torus>(*this);
   return {{ring}, {std::make_shared<FarSide>(ring)}};
+}
+
+TriangleMesh Torus::doSurface() const {
+  if (!isRing(angle_)) return surfaceNets(*this, 2 * steps_a_turn);
+  std::vector<Eigen::Vector2d> tube = arc({radius_, 0}, tube_radius_, 0, turn);
+  tube.pop_back();
+  return lathe(tube);
 }
 
 }  // namespace tactus::geometry

@@ -19,6 +19,7 @@ class Torus final : public Shape {
  private:
   SignedDistance doDistance(const Eigen::Vector3d& p) const override;
   std::optional<Eigen::Vector3d> doSupport(const Eigen::Vector3d& n) const override;
+  TriangleMesh doSurface() const override;
   /// Of a ring, its near side and the one across the axis: a ball sits in it.
   std::vector<Piece> doPieces() const override;
   /// The point of the arc that lies most in the direction of (x, y).

@@ -108,11 +108,58 @@ TEST_F(ReportCommandTest, ValuesBeyondEveryAxisAreLeftOut) {
   EXPECT_THAT(contentOf(file("report.html")), Not(HasSubstr("inf")));
 }
 
+TEST_F(ReportCommandTest, WhatTheReplayNeedsIsLocatedToo) {
+  const auto says = [&](const std::string& name, const std::string& from, const std::string& to) {
+    const std::string good = contentOf(file(name));
+    change(name, from, to);
+    const Outcome outcome = report();
+    EXPECT_EQ(outcome.exit_code, 6) << name << ": " << from;
+    write(name, good);
+    return outcome.err;
+  };
+  EXPECT_THAT(says("scene.json", "tactus-scene/1", "tactus-scene/0"), HasSubstr("scene.json: is not of the format tactus-scene/1"));
+  EXPECT_THAT(says("scene.json", "\"radius\":", "\"girth\":"), HasSubstr("/capsules/0/radius': expected a number, found nothing"));
+  EXPECT_THAT(says("scene.json", "\"triangles\":[", "\"triangles\":[-1,0,0,"),
+              HasSubstr("/triangles/0': expected the index of a vertex"));
+  EXPECT_THAT(says("replay.csv", "time,", "tide,"), HasSubstr("replay.csv: has no column 'time'"));
+  EXPECT_THAT(says("replay_contacts.csv", "link,on", "link,at"), HasSubstr("replay_contacts.csv: has no column"));
+}
+
+/// The page of an old run, of which nothing was kept to replay.
+TEST_F(ReportCommandTest, ARunWithoutAReplayHasItsTables) {
+  for (const char* name : {"scene.json", "replay.csv", "replay_contacts.csv", "timing.csv"}) fs::remove(file(name));
+  EXPECT_EQ(report().exit_code, 0);
+  EXPECT_THAT(contentOf(file("report.html")), HasSubstr("\"scene\":null"));
+}
+
+TEST_F(ReportCommandTest, NoNameEndsTheScript) {
+  change("scene.json", "\"robot\":\"", "\"robot\":\"</script><b>");
+  EXPECT_EQ(report().exit_code, 0);
+  EXPECT_THAT(contentOf(file("report.html")), Not(HasSubstr("</script><b>")));
+}
+
+TEST_F(ReportCommandTest, TwoRunsBesideEachOther) {
+  const Outcome outcome = tactus({"report", run(), "--beside", run()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(contentOf(file("beside-run.html")), HasSubstr("run beside run"));
+  EXPECT_EQ(tactus({"report", run(), "--beside", folder.file("none")}).exit_code, 6);
+}
+
+TEST_F(ReportCommandTest, PicturesSayWhatTheyNeed) {
+  Settings settings;
+  settings.environment = {"PATH=/nonexistent"};
+  const Outcome outcome = tactus({"report", run(), "--png", folder.file("scene.png")}, settings);
+  EXPECT_EQ(outcome.exit_code, 6);
+  EXPECT_THAT(outcome.err, HasSubstr("pictures need Chromium, and there is none on the path; on Debian: apt-get install chromium"));
+  EXPECT_EQ(tactus({"report", run(), "--png", "x.png", "--camera", "moon"}).exit_code, 2);
+}
+
 /// Whatever stands in the files, the end is a report or a message about a file.
 TEST_F(ReportCommandTest, NoFileBringsItDown) {
   std::mt19937 random(7);
   const std::vector<std::string> pieces{"\"", "{", "}", "[", "]", ":", ",", "null", "-1e308", "1e999", "nan", "\n", "0"};
-  for (const char* name : {"run.json", "log.csv", "touched_points.csv"}) {
+  for (const char* name : {"run.json", "log.csv", "touched_points.csv", "scene.json", "replay.csv", "replay_contacts.csv",
+                           "timing.csv"}) {
     const std::string good = contentOf(file(name));
     for (int i = 0; i < 40; ++i) {
       std::string bad = good;
