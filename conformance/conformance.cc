@@ -38,6 +38,7 @@ std::vector<control::ElementValues*> instancesIn(dsl::Stack& stack, const Elemen
     for (dsl::ElementInstance& task : level.tasks) add(task.values);
     if (level.controller) add(level.controller->values);
   }
+  for (dsl::ElementInstance& measure : stack.run.measures) add(measure.values);
   for (dsl::ElementInstance& recorder : stack.run.recorders) add(recorder.values);
   add(stack.back_end);
   return found;
@@ -58,6 +59,7 @@ void checkInstance(const dsl::Stack& stack, const control::Registry& registry, c
     case ElementKind::signal: return checkSignal(subject, report);
     case ElementKind::task: return checkTask(subject, report);
     case ElementKind::controller: return checkController(subject, report);
+    case ElementKind::measure: return checkMeasure(subject, report);
     case ElementKind::recorder: return checkRecorder(subject, report);
     case ElementKind::back_end: return checkBackEnd(subject, report);
     case ElementKind::structure: return;
@@ -86,6 +88,8 @@ void checkMaking(dsl::Stack stack, const control::Registry& registry, const Elem
         if (row.kind == ElementKind::shape) registry.makeShape(*values);
       const auto controller = dsl::compile(stack, registry);
       const runtime::TemporaryFolder folder;
+      const description::Scene scene = stack.scene(1);
+      if (row.kind == ElementKind::measure) dsl::makeMeasures(stack, registry, *controller, scene);
       if (row.kind == ElementKind::recorder) dsl::makeRecorders(stack, registry, *controller, folder.path);
     } catch (const dsl::InvalidStack& invalid) {
       throw Broken{sentenceOf(invalid)};

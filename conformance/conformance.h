@@ -43,6 +43,10 @@
 ///   tasks        it owns one; each keeps the laws of tasks, under its full name.
 ///   allocation, determinism, state   of its update; of its columns and the forces of its tasks.
 ///
+/// of each measure
+///   figures      it has a figure or a column; figures keep their names from before the first tick on, none is infinite.
+///   allocation, determinism, state   over figures and columns.
+///
 /// of each recorder
 ///   files        it writes what it writes into the run folder, and throws nothing.
 ///   determinism  a second run of the same inputs leaves the same files, however long its ticks took.

@@ -24,6 +24,7 @@ void checkSignal(const Subject& subject, Report& report);
 void checkTask(const Subject& subject, Report& report);
 /// With the laws of tasks for each that it owns.
 void checkController(const Subject& subject, Report& report);
+void checkMeasure(const Subject& subject, Report& report);
 void checkRecorder(const Subject& subject, Report& report);
 /// The stack's back end.
 void checkBackEnd(const Subject& subject, Report& report);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dsl/read_robot.h"
+#include "framework/geometry/primitives.h"
 #include "framework/runtime/program_path.h"
 
 namespace tactus::conformance {
@@ -72,6 +73,7 @@ class Maker {
   dsl::Stack make(const ElementRow& row) {
     if (row.kind == ElementKind::signal) addSignal(row);
     if (row.kind == ElementKind::sensor) stack_.sensors.push_back(instanceOf(row, "specimen"));
+    if (row.kind == ElementKind::measure) stack_.run.measures.push_back(instanceOf(row, "specimen"));
     if (row.kind == ElementKind::recorder) stack_.run.recorders.push_back(instanceOf(row, "specimen"));
     if (row.kind == ElementKind::shape) addObject(row);
     dsl::LevelDescription level;
@@ -112,7 +114,7 @@ class Maker {
         if (attribute.required) given[attribute.name] = port(attribute);
         else if (attribute.default_text) addSignalNamed(*attribute.default_text, attribute.port_type);
       } else if (attribute.required) {
-        given[attribute.name] = guess(row, attribute);
+        given[attribute.name] = attribute.type == ValueType::object ? ball() : guess(row, attribute);
       }
     }
     dsl::ElementInstance instance{control::makeValues(row, given), name, {}, "<" + row.name + ">"};
@@ -144,6 +146,16 @@ class Maker {
     object.shapes.push_back(instanceOf(row, "").values);
     object.object.primitives.push_back({registry_.makeShape(object.shapes.back()), Eigen::Isometry3d::Identity()});
     stack_.objects.push_back(std::move(object));
+  }
+
+  /// The name of an object of the scene, which is added.
+  std::string ball() {
+    dsl::ObjectDescription object;
+    object.object.name = "ball";
+    object.object.primitives.push_back({std::make_shared<geometry::Sphere>(0.05), Eigen::Isometry3d::Identity()});
+    object.object.pose.translation() << 0.7, 0, 0.1;
+    stack_.objects.push_back(std::move(object));
+    return "ball";
   }
 
   /// "name.port" of a signal with a port of the attribute's type, which is added.

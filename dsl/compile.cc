@@ -447,6 +447,18 @@ class Compiler {
   std::vector<control::NamedSignal> signals_;
 };
 
+/// Of parts that are made when the controller stands.
+control::BuildContext::PortLookup portsOf(const Stack& stack, const control::Controller& controller) {
+  return [&](const std::string& attribute, const std::string& reference, const std::string& type) -> const void* {
+    std::vector<control::PortRow> rows;
+    const control::PortRow& row = portRow(stack, attribute, reference, type, rows);
+    const std::string name = reference.substr(0, reference.find('.'));
+    for (const control::NamedSignal& named : controller.signals())
+      if (named.name == name) return named.signal->port(row.name);
+    return controller.readings().port(name, row.name);
+  };
+}
+
 }  // namespace
 
 std::unique_ptr<control::Controller> compile(const Stack& stack, const control::Registry& registry) {
@@ -461,24 +473,29 @@ std::vector<runtime::NamedSensor> makeSensors(const Stack& stack, const control:
   return sensors;
 }
 
+std::vector<runtime::NamedMeasure> makeMeasures(const Stack& stack, const control::Registry& registry,
+                                                const control::Controller& controller,
+                                                const description::Scene& scene) {
+  PartMaker parts(stack, registry);
+  std::vector<runtime::NamedMeasure> measures;
+  for (const ElementInstance& element : stack.run.measures) {
+    const control::MeasureContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene);
+    if (auto made = parts.make(element, [&] { return registry.makeMeasure(context); }))
+      measures.push_back({element.name, std::move(*made)});
+  }
+  parts.errors().throwIfAny();
+  return measures;
+}
+
 std::vector<std::unique_ptr<runtime::GuardedObserver>> makeRecorders(const Stack& stack,
                                                                      const control::Registry& registry,
                                                                      const control::Controller& controller,
                                                                      const std::string& folder) {
   PartMaker parts(stack, registry);
-  const auto port = [&](const std::string& attribute, const std::string& reference,
-                        const std::string& type) -> const void* {
-    std::vector<control::PortRow> rows;
-    const control::PortRow& row = portRow(stack, attribute, reference, type, rows);
-    const std::string name = reference.substr(0, reference.find('.'));
-    for (const control::NamedSignal& named : controller.signals())
-      if (named.name == name) return named.signal->port(row.name);
-    return controller.readings().port(name, row.name);
-  };
   const bool switch_off = controller.options().on_fault == control::OnFault::switch_off;
   std::vector<std::unique_ptr<runtime::GuardedObserver>> recorders;
   for (const ElementInstance& element : stack.run.recorders) {
-    const control::RecorderContext context(parts.contextOf(element, port), controller, folder);
+    const control::RecorderContext context(parts.contextOf(element, portsOf(stack, controller)), controller, folder);
     if (auto made = parts.make(element, [&] { return registry.makeRecorder(context); }))
       recorders.push_back(std::make_unique<runtime::GuardedObserver>(element.name, std::move(*made), switch_off));
   }

@@ -8,6 +8,7 @@
 #include "framework/control/controller.h"
 #include "framework/control/registry.h"
 #include "framework/runtime/guarded_observer.h"
+#include "framework/runtime/measures.h"
 #include "framework/runtime/sensing_plant.h"
 
 namespace tactus::dsl {
@@ -20,6 +21,12 @@ std::unique_ptr<control::Controller> compile(const Stack& stack, const control::
 /// The sensors of a run with that seed.  Throws InvalidStack as `compile` does; a stack that compiles has its sensors.
 std::vector<runtime::NamedSensor> makeSensors(const Stack& stack, const control::Registry& registry,
                                               const description::Scene& scene, std::uint64_t seed);
+
+/// The stack's measures; ports that they read are those of the controller's signals, which outlives them as the scene does.
+/// Throws InvalidStack.
+std::vector<runtime::NamedMeasure> makeMeasures(const Stack& stack, const control::Registry& registry,
+                                                const control::Controller& controller,
+                                                const description::Scene& scene);
 
 /// The stack's own recorders, each to write into `folder`; ports that they read are those of the controller's signals.
 /// Throws InvalidStack with what a factory refuses, FileError where it cannot write.

@@ -92,6 +92,7 @@ const std::vector<KindText>& kindTexts() {
                                            {ElementKind::signal, "signal", "signals, in <signals>"},
                                            {ElementKind::task, "task", "tasks, in <level>"},
                                            {ElementKind::controller, "controller", "controllers, alone in a <level>"},
+                                           {ElementKind::measure, "measure", "measures, in <run>"},
                                            {ElementKind::recorder, "recorder", "recorders, in <run>"},
                                            {ElementKind::back_end, "back-end", "back ends, by <controller backend>"}};
   return kinds;

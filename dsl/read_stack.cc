@@ -414,6 +414,7 @@ class StackReader {
     stack_.run.seed = static_cast<std::uint64_t>(run->values.integer("seed"));
     checkDuration(*run);
     for (const CheckedElement* target : run->all("target")) readTarget(*target);
+    stack_.run.measures = readList(root, "run", ElementKind::measure);
     stack_.run.recorders = readList(root, "run", ElementKind::recorder);
     const CheckedElement* record = run->first("record");
     if (!record || !record->complete) return;

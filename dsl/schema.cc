@@ -243,6 +243,7 @@ constexpr Page pages[] = {
     {ElementKind::signal, "signals.md", "Signals", "Sources of values, in `<signals>`; read as `name.port`."},
     {ElementKind::task, "tasks.md", "Tasks", "What the robot should do, in a `<level>`."},
     {ElementKind::controller, "controllers.md", "Controllers", "What owns a whole `<level>`."},
+    {ElementKind::measure, "measures.md", "Measures", "What judges a run by what truly happened, in `<run>`: figures and columns that no task can read."},
     {ElementKind::recorder, "recorders.md", "Recorders", "What else a run writes into its folder, in `<run>`."},
     {ElementKind::back_end, "back-ends.md", "Back ends",
      "What solves a tick: `<controller backend=\"…\">`, with these options as further attributes."}};

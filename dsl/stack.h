@@ -70,6 +70,7 @@ struct RunOptions {
   std::string columns = "default";                                 ///< "default" | "all"
   double record_rate = 100;                                        ///< Hz, rows of log.csv
   std::vector<TargetDescription> targets;
+  std::vector<ElementInstance> measures;
   std::vector<ElementInstance> recorders;
 };
 

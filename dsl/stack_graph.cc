@@ -17,6 +17,11 @@ using control::PortRow;
 using control::ValueType;
 using nlohmann::ordered_json;
 
+/// Reads, and is no part of the controller.
+bool isWatcher(const GraphNode& node) {
+  return node.kind == GraphNode::Kind::measure || node.kind == GraphNode::Kind::recorder;
+}
+
 std::string kindOf(const GraphNode& node) {
   switch (node.kind) {
     case GraphNode::Kind::sensor: return "sensor";
@@ -24,6 +29,7 @@ std::string kindOf(const GraphNode& node) {
     case GraphNode::Kind::level: return "level";
     case GraphNode::Kind::controller: return "controller";
     case GraphNode::Kind::task: return "task";
+    case GraphNode::Kind::measure: return "measure";
     case GraphNode::Kind::recorder: return "recorder";
   }
   return "";
@@ -64,6 +70,8 @@ class Builder {
       if (level.controller) addReader(GraphNode::Kind::controller, *level.controller);
       for (const ElementInstance& task : level.tasks) addReader(GraphNode::Kind::task, task);
     }
+    for (const ElementInstance& measure : stack_.run.measures)
+      read(measure, add(GraphNode::Kind::measure, measure, measure.name));
     for (const ElementInstance& recorder : stack_.run.recorders)
       read(recorder, add(GraphNode::Kind::recorder, recorder, recorder.name));
     for (auto& node : graph_.nodes) node.used = node.kind != GraphNode::Kind::signal;
@@ -224,7 +232,7 @@ class Drawing {
       y += gap / 2 + gap;
     }
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (node(i).kind != GraphNode::Kind::recorder) continue;
+      if (!isWatcher(node(i))) continue;
       boxes_[i].x = tasks_x_ + gap / 2;
       boxes_[i].y = y;
       y += boxes_[i].height + gap;
@@ -294,7 +302,7 @@ std::string graphToDot(const StackGraph& graph) {
            (isSource(n) ? ", style=rounded" : "") + (n.used ? "" : ", color=orange") + "];\n";
   };
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    if (isSource(graph.nodes[i]) || graph.nodes[i].kind == GraphNode::Kind::recorder) node(i, "  ");
+    if (isSource(graph.nodes[i]) || isWatcher(graph.nodes[i])) node(i, "  ");
     if (graph.nodes[i].kind != GraphNode::Kind::level) continue;
     out += "  subgraph " + quoted("cluster_" + graph.nodes[i].name) + " {\n    label=" +
            quoted("level " + graph.nodes[i].name) + ";\n";

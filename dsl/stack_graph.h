@@ -10,7 +10,7 @@
 namespace tactus::dsl {
 
 struct GraphNode {
-  enum class Kind { sensor, signal, level, controller, task, recorder } kind = Kind::signal;
+  enum class Kind { sensor, signal, level, controller, task, measure, recorder } kind = Kind::signal;
   std::string name;                                                ///< of a level: its priority
   std::string element;                                             ///< "contacts", "level", "posture"
   description::Place place;
@@ -29,7 +29,7 @@ struct GraphEdge {
 
 struct StackGraph {
   std::string stack;
-  std::vector<GraphNode> nodes;                        ///< sensors, signals, each level before what it holds, recorders
+  std::vector<GraphNode> nodes;                        ///< sensors, signals, each level before what it holds, measures, recorders
   std::vector<GraphEdge> edges;
 };
 

@@ -314,7 +314,7 @@ ElementRow runRow() {
                           .lower_open = true},
                          {.name = "seed", .type = ValueType::integer, .default_text = std::to_string(run_options.seed),
                           .description = "Of every draw; 0 draws no jitter.", .lower = 0}},
-          .children = {{"record", 0, 1}, {"@recorder"}, {"target"}}};
+          .children = {{"record", 0, 1}, {"@measure"}, {"@recorder"}, {"target"}}};
 }
 
 ElementRow targetRow() {

@@ -164,6 +164,7 @@ std::string writeResolved(const Stack& stack) {
          attributeText("seed", std::to_string(stack.run.seed)) + ">\n    <record" +
          attributeText("columns", stack.run.columns) +
          attributeText("rate", control::formatNumber(stack.run.record_rate)) + "/>\n";
+  for (const ElementInstance& measure : stack.run.measures) out += leaf("    ", measure.values, sources);
   for (const ElementInstance& recorder : stack.run.recorders) out += leaf("    ", recorder.values, sources);
   for (const TargetDescription& target : stack.run.targets) out += targetText(target);
   return out + "  </run>\n</stack>\n";

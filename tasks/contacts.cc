@@ -1,7 +1,8 @@
 #include "tasks/contacts.h"
 
 #include <algorithm>
-#include <variant>
+
+#include "framework/description/link_shape.h"
 
 namespace tactus::tasks {
 
@@ -11,20 +12,6 @@ namespace {
 
 constexpr int kRecentPoints = 16;
 constexpr int kMaxTouchedPoints = 50000;
-
-/// The middle of the link's shapes in the link frame ("the geometrical centre of the links", thesis 4.3.2).
-Eigen::Vector3d centreOfShapes(const description::Link& link) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const description::LinkShape& shape : link.shapes) {
-    if (const auto* capsule = std::get_if<description::CapsuleShape>(&shape)) {
-      sum += 0.5 * (capsule->from + capsule->to);
-    } else {
-      sum += std::get<description::BoxShape>(shape).pose.translation();
-    }
-  }
-  if (link.shapes.empty()) return link.centre_of_mass;
-  return sum / static_cast<double>(link.shapes.size());
-}
 
 }  // namespace
 
@@ -74,7 +61,7 @@ Contacts::Contacts(const BuildContext& context)
     if (!link.feels) throw ElementError("desired", "link '" + described.name + "' has no skin, so it cannot be desired to touch");
     link.desired = true;
     link.slot = slot;
-    link.centre_L = centreOfShapes(described);
+    link.centre_L = description::middleOf(described);
   }
   int feeling = 0;
   for (LinkTouch& link : links_) {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "framework/control/displacement.h"
+#include "framework/description/link_shape.h"
 
 namespace tactus::tasks {
 
@@ -26,7 +27,13 @@ void MakeContact::registerIn(Registry& registry) {
        .description = "λ, the speed of the reference.", .lower = 0},
       {.name = "bound", .type = ValueType::real, .unit = "m", .default_text = "0.1",
        .description = "Greatest distance of the reference from the link.", .lower = 0, .lower_open = true},
+      {.name = "patch", .type = ValueType::link,
+       .description = "To grasp: missing links move from this one towards opposing-patch, whatever touches."},
+      {.name = "opposing-patch", .type = ValueType::link, .description = "With patch: the link across the object."},
+      {.name = "opposing", .type = ValueType::links,
+       .description = "With patch: links that move the other way, from opposing-patch towards patch."},
   };
+  row.presence = {{Presence::together, {"patch", "opposing-patch"}}, {Presence::needs, {"opposing", "patch"}}};
   registry.addTask(row, [](const BuildContext& context) { return std::make_unique<MakeContact>(context); });
 }
 
@@ -38,9 +45,27 @@ MakeContact::MakeContact(const BuildContext& context)
       speed_(context.values.real("speed")),
       bound_(context.values.real("bound")),
       references_(missing_.capacity),
-      seen_(missing_.capacity, 0) {}
+      seen_(missing_.capacity, 0) {
+  if (!context.values.has("patch")) return;
+  const int patch = context.frame("patch"), other = context.frame("opposing-patch");
+  if (patch == other) throw ElementError("opposing-patch", "a grasp has two sides: opposing-patch is patch");
+  const auto middle = [&](int frame) { return description::middleOf(context.robot.links[static_cast<std::size_t>(frame)]); };
+  opposition_ = Opposition{patch, other, middle(patch), middle(other), std::vector<bool>(context.model.frames().size())};
+  if (!context.values.has("opposing")) return;
+  for (const int frame : context.frames("opposing")) opposition_->opposing[static_cast<std::size_t>(frame)] = true;
+}
 
-Eigen::Vector3d MakeContact::desiredVelocity(const Eigen::Vector3d& point_W) const {
+Eigen::Vector3d MakeContact::desiredVelocity(const Tick& tick, const MissingContact& missing) const {
+  if (!opposition_) return towardsSurface(missing.point_W);
+  const Opposition& grasp = *opposition_;
+  const Eigen::Vector3d across = tick.robot.framePose(grasp.other) * grasp.middle_O -
+                                 tick.robot.framePose(grasp.patch) * grasp.middle_P;
+  const double distance = across.norm();
+  if (distance < 1e-9) return Eigen::Vector3d::Zero();
+  return (grasp.opposing[static_cast<std::size_t>(missing.frame)] ? -speed_ : speed_) / distance * across;
+}
+
+Eigen::Vector3d MakeContact::towardsSurface(const Eigen::Vector3d& point_W) const {
   const Contact* closest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Contact& contact : *missing_.all_contacts) {
@@ -62,7 +87,7 @@ void MakeContact::doUpdate(const Tick& tick, TickTask& rows) {
   rows.rows = 0;
   error_ = 0;
   std::fill(seen_.begin(), seen_.end(), 0);
-  if (!missing_.all_contacts->empty()) {
+  if (opposition_ || !missing_.all_contacts->empty()) {
     for (const MissingContact& missing : missing_.points) {
       seen_[missing.slot] = 1;
       Reference& reference = references_[missing.slot];
@@ -70,7 +95,7 @@ void MakeContact::doUpdate(const Tick& tick, TickTask& rows) {
         reference.active = true;
         reference.position_W = missing.point_W;
       }
-      const Eigen::Vector3d velocity = desiredVelocity(missing.point_W);
+      const Eigen::Vector3d velocity = desiredVelocity(tick, missing);
       reference.position_W += tick.dt * velocity;
       Eigen::Vector3d x_e = reference.position_W - missing.point_W;
       const double distance = x_e.norm();

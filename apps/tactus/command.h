@@ -42,6 +42,7 @@ void addCheck(CLI::App& program, Context& context);
 void addCompare(CLI::App& program, Context& context);
 void addSolve(CLI::App& program, Context& context);
 void addDynamics(CLI::App& program, Context& context);
+void addGrasp(CLI::App& program, Context& context);
 void addGolden(CLI::App& program, Context& context);
 void addStudy(CLI::App& program, Context& context);
 void addPlugins(CLI::App& program, Context& context);

@@ -81,6 +81,7 @@ int runCommand(int argc, char** argv) {
   addCompare(app, context);
   addSolve(app, context);
   addDynamics(app, context);
+  addGrasp(app, context);
   addGolden(app, context);
   addStudy(app, context);
   addPlugins(app, context);

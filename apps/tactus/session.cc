@@ -75,6 +75,7 @@ Session::Session(dsl::Stack stack, const control::Registry& registry)
   contacts_ = std::make_unique<runtime::ContactMetrics>(static_cast<int>(stack_.robot.links.size()),
                                                         static_cast<int>(scene_.objects.size()), desiredLinks(),
                                                         !stack_.robot.self_contact.empty());
+  measures_ = std::make_unique<runtime::Measures>(dsl::makeMeasures(stack_, registry_, *controller_, scene_));
   for (size_t i = 0; i < stack_.signals.size() && !touched_points_; ++i) {
     touched_points_ = findPort<control::TouchedPoints>(i, "points");
   }
@@ -172,10 +173,11 @@ void Session::archiveParts(control::Archive& archive) {
   archive("plant", static_cast<runtime::Plant&>(*plant_));
   archive("controller", *controller_);
   archive("contacts", *contacts_);
+  archive("measure", *measures_);
 }
 
 runtime::LoopResult Session::run(const std::vector<control::Observer*>& others, const std::atomic<bool>& stop) {
-  std::vector<control::Observer*> observers{contacts_.get(), &statistics_};
+  std::vector<control::Observer*> observers{contacts_.get(), measures_.get(), &statistics_};
   observers.insert(observers.end(), others.begin(), others.end());
   runtime::LoopResult result = runtime::runLoop(*plant_, *controller_, stack_.run.duration - time(), observers, stop);
   if (result.ending == runtime::Ending::plant_error || result.ending == runtime::Ending::tick_error) {
@@ -196,6 +198,7 @@ std::unique_ptr<runtime::Recorder> Session::recordInto(const std::string& folder
   options.touched_points = touched_points_;
   options.first_tick = tick();
   options.faults = faults_;
+  options.measures = measures_->columns();
   for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
     if (scene_.objects[i].mobility != description::Mobility::fixed) options.objects.push_back({scene_.objects[i].name, i});
   return std::make_unique<runtime::Recorder>(options);
@@ -221,6 +224,7 @@ std::vector<control::Metric> Session::metrics() const {
       metrics.push_back(std::move(metric));
     }
   }
+  for (control::Metric& metric : measures_->metrics()) metrics.push_back(std::move(metric));
   return metrics;
 }
 

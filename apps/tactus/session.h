@@ -15,6 +15,7 @@
 #include "framework/runtime/contact_metrics.h"
 #include "framework/runtime/guarded_observer.h"
 #include "framework/runtime/loop.h"
+#include "framework/runtime/measures.h"
 #include "framework/runtime/recorder.h"
 #include "framework/runtime/run_statistics.h"
 #include "framework/runtime/sensing_plant.h"
@@ -45,13 +46,13 @@ class Session {
   double time() const { return plant_->truth().time; }
   long tick() const { return std::lround(time() / controller_->period()); }
 
-  /// Runs until the stack's duration; `others` observe after contacts and statistics.
+  /// Runs until the stack's duration; `others` observe after contacts, measures and statistics.
   runtime::LoopResult run(const std::vector<control::Observer*>& others, const std::atomic<bool>& stop);
   /// A recorder of this session as the stack asks for it, which writes into `folder`.
   std::unique_ptr<runtime::Recorder> recordInto(const std::string& folder) const;
   /// The stack's own recorders, which write into `folder`; `run` does not close them.
   std::vector<control::Observer*> startRecorders(const std::string& folder);
-  /// Figures of the run so far: contacts, tasks, signals, features.
+  /// Figures of the run so far: contacts, tasks, signals, features, measures.
   std::vector<control::Metric> metrics() const;
 
   /// Names of all figures that a run of this stack may have; those of a feature that it may never find among them.
@@ -97,6 +98,7 @@ class Session {
   std::unique_ptr<runtime::SensingPlant> plant_;
   std::vector<std::unique_ptr<runtime::GuardedObserver>> recorders_;
   std::unique_ptr<runtime::ContactMetrics> contacts_;
+  std::unique_ptr<runtime::Measures> measures_;
   const control::TouchedPoints* touched_points_ = nullptr;
   std::vector<SoughtFeature> features_;
   std::vector<const control::FaultRecord*> faults_;                // of the plant

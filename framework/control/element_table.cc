@@ -86,6 +86,7 @@ bool ChildRow::allows(const ElementRow& row) const {
     case ElementKind::signal: return element == "@signal";
     case ElementKind::task: return element == "@task";
     case ElementKind::controller: return element == "@controller";
+    case ElementKind::measure: return element == "@measure";
     case ElementKind::recorder: return element == "@recorder";
     case ElementKind::structure: return element == row.name;
     case ElementKind::back_end: break;                             // no element of its own

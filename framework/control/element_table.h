@@ -93,7 +93,7 @@ struct PortRow {
   int dimension = 0;                                               ///< numbers of a value; 0 = as many as there are
 };
 
-enum class ElementKind { structure, shape, sensor, signal, task, controller, recorder, back_end };
+enum class ElementKind { structure, shape, sensor, signal, task, controller, measure, recorder, back_end };
 
 struct ElementRow {
   std::string name;

@@ -188,6 +188,10 @@ void Registry::addController(ElementRow row, ControllerFactory make) {
   addNamed(elements_, ElementKind::controller, std::move(row), controllers_, std::move(make));
 }
 
+void Registry::addMeasure(ElementRow row, MeasureFactory make) {
+  addNamed(elements_, ElementKind::measure, std::move(row), measures_, std::move(make));
+}
+
 void Registry::addRecorder(ElementRow row, RecorderFactory make) {
   addNamed(elements_, ElementKind::recorder, std::move(row), recorders_, std::move(make));
 }
@@ -230,6 +234,10 @@ ControlledLevel Registry::makeController(const BuildContext& context) const {
     if (!names.insert(owned.name).second) throw ElementError("", "it names two tasks '" + owned.name + "'");
   }
   return level;
+}
+
+std::unique_ptr<Measure> Registry::makeMeasure(const MeasureContext& context) const {
+  return made(factoryOf(measures_, context.values)(context));
 }
 
 std::unique_ptr<Observer> Registry::makeRecorder(const RecorderContext& context) const {

@@ -12,6 +12,7 @@
 #include "framework/control/element_table.h"
 #include "framework/control/element_values.h"
 #include "framework/control/level_controller.h"
+#include "framework/control/measure.h"
 #include "framework/control/observer.h"
 #include "framework/control/readings.h"
 #include "framework/control/sensor.h"
@@ -100,6 +101,14 @@ struct SensorContext : BuildContext {
   std::vector<ReadingRow> before;                                  ///< of sensors before it: so felt.readings begin
 };
 
+/// What the factory of a measure may look at; ports are those of the controller's signals.
+struct MeasureContext : BuildContext {
+  MeasureContext(BuildContext context, const Controller& controller, const description::Scene& scene)
+      : BuildContext(std::move(context)), controller(controller), scene(scene) {}
+  const Controller& controller;                                    ///< before its first tick; outlives the measure
+  const description::Scene& scene;                                 ///< as the run's seed drew it; outlives the measure
+};
+
 /// What the factory of a recorder may look at; ports are those of the controller's signals.
 struct RecorderContext : BuildContext {
   RecorderContext(BuildContext context, const Controller& controller, std::string folder)
@@ -117,6 +126,7 @@ using SensorFactory = std::function<std::unique_ptr<Sensor>(const SensorContext&
 using TaskFactory = std::function<std::unique_ptr<Task>(const BuildContext&)>;
 using SignalFactory = std::function<std::unique_ptr<Signal>(const BuildContext&)>;
 using ControllerFactory = std::function<ControlledLevel(const BuildContext&)>;
+using MeasureFactory = std::function<std::unique_ptr<Measure>(const MeasureContext&)>;
 using RecorderFactory = std::function<std::unique_ptr<Observer>(const RecorderContext&)>;
 /// Values are those of the back end's row.
 using BackEndFactory = std::function<std::unique_ptr<BackEnd>(const ElementValues&)>;
@@ -128,13 +138,14 @@ class Registry {
   void addStructure(ElementRow row);
   /// A solid that objects of the scene are made of; gets the attribute `pose` besides its own.
   void addShape(ElementRow row, ShapeFactory make);
-  /// Sensors, signals, tasks, controllers and recorders get the attributes `name` (required) and `class` besides their
+  /// Sensors, signals, tasks, controllers, measures and recorders get the attributes `name` (required) and `class` besides their
   /// own, tasks also those of `activityAttributes`.
   void addSensor(ElementRow row, SensorFactory make);
   void addSignal(ElementRow row, SignalFactory make);
   void addTask(ElementRow row, TaskFactory make);
   /// A controller owns a whole level.
   void addController(ElementRow row, ControllerFactory make);
+  void addMeasure(ElementRow row, MeasureFactory make);
   void addRecorder(ElementRow row, RecorderFactory make);
   void addBackEnd(ElementRow row, BackEndFactory make);
 
@@ -145,6 +156,7 @@ class Registry {
   std::unique_ptr<Signal> makeSignal(const BuildContext& context) const;
   std::unique_ptr<Task> makeTask(const BuildContext& context) const;
   ControlledLevel makeController(const BuildContext& context) const;
+  std::unique_ptr<Measure> makeMeasure(const MeasureContext& context) const;
   std::unique_ptr<Observer> makeRecorder(const RecorderContext& context) const;
   std::unique_ptr<BackEnd> makeBackEnd(const ElementValues& values) const;  ///< with its recipe
   std::vector<std::string> names(ElementKind kind) const;
@@ -156,6 +168,7 @@ class Registry {
   std::map<std::string, SignalFactory> signals_;
   std::map<std::string, TaskFactory> tasks_;
   std::map<std::string, ControllerFactory> controllers_;
+  std::map<std::string, MeasureFactory> measures_;
   std::map<std::string, RecorderFactory> recorders_;
   std::map<std::string, BackEndFactory> back_ends_;
 };

@@ -23,4 +23,11 @@ geometry::PosedShape solidOf(const LinkShape& shape) {
   return std::visit([](const auto& one) { return solidOf(one); }, shape);
 }
 
+Eigen::Vector3d middleOf(const Link& link) {
+  if (link.shapes.empty()) return link.centre_of_mass;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const LinkShape& shape : link.shapes) sum += solidOf(shape).pose.translation();
+  return sum / static_cast<double>(link.shapes.size());
+}
+
 }  // namespace tactus::description

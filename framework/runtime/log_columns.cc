@@ -9,7 +9,8 @@ using control::TickSolution;
 
 LogColumns::LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts,
                        const std::vector<MovingObject>& objects,
-                       const std::vector<const control::FaultRecord*>& faults) {
+                       const std::vector<const control::FaultRecord*>& faults,
+                       const std::vector<control::LogColumn>& measures) {
   add("time", [](const control::ObservedTick& tick) { return tick.sensed.time; });
   addLevels(controller);
   addTasksAndSignals(controller);
@@ -17,6 +18,8 @@ LogColumns::LogColumns(const control::Controller& controller, ColumnSet set, con
   addObjects(objects);
   for (const control::FaultRecord* fault : faults)
     add("fault/" + fault->name, [fault](const control::ObservedTick&) { return fault->strikes; });
+  for (const control::LogColumn& column : measures)
+    add(column.name, [value = column.value](const control::ObservedTick&) { return *value; });
   if (contacts) addContacts(*contacts);
   addController(controller);
   if (set == ColumnSet::all) addJoints(controller);

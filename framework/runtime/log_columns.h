@@ -31,6 +31,7 @@ struct MovingObject {
 ///     sensor/<name>/<port>, or <port>/0, <port>/1, … of a vector of at most 6 numbers; all of it in the set `all`
 ///     object/<name>/{x,y,z,qw,qx,qy,qz}                     of objects that move: m, and a quaternion with w ≥ 0
 ///     fault/<name>                                          of what was asked to go wrong: 1 while it strikes
+///     measure/<name>/<the measure's own>
 ///     contact/{contacts,links,mean_N,max_N,undesired_max_N}, and self_max_N of robots that touch themselves
 ///     controller/{torque_norm,scale,status,fallback,limited}
 ///     controller/rate_limited, controller/late              when the controller declares a torque rate, a deadline
@@ -44,10 +45,11 @@ class LogColumns {
   using Value = std::function<double(const control::ObservedTick&)>;
 
   /// Made from the first tick: what a back end tells is known only after it has solved once.
-  /// `contacts` may be null; controller, contacts and faults must outlive this object.
+  /// `contacts` may be null; controller, contacts, faults and what stands behind `measures` must outlive this object.
   LogColumns(const control::Controller& controller, ColumnSet set, const ContactMetrics* contacts,
              const std::vector<MovingObject>& objects = {},
-             const std::vector<const control::FaultRecord*>& faults = {});
+             const std::vector<const control::FaultRecord*>& faults = {},
+             const std::vector<control::LogColumn>& measures = {});
 
   const std::vector<std::string>& names() const { return names_; }
   size_t size() const { return values_.size(); }

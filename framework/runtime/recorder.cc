@@ -21,7 +21,7 @@ Recorder::Recorder(const RecorderOptions& options)
 void Recorder::observe(const control::ObservedTick& tick) {
   if (!columns_) {
     columns_.emplace(tick.controller, options_.columns, options_.contacts, options_.objects,
-                     options_.faults);
+                     options_.faults, options_.measures);
     log_.emplace(options_.folder + "/log.csv", columns_->names());
     const double ticks = 1 / (options_.row_rate * tick.controller.period());
     ticks_per_row_ = std::lround(std::clamp(ticks, 1.0, most_ticks_per_row));

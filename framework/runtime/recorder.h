@@ -16,6 +16,7 @@ struct RecorderOptions {
   const ContactMetrics* contacts = nullptr;                        ///< observes before the recorder; null: no columns
   std::vector<MovingObject> objects = {};                          ///< whose motion goes into log.csv
   std::vector<const control::FaultRecord*> faults = {};            ///< that get columns of log.csv; they outlive it
+  std::vector<control::LogColumn> measures = {};                   ///< that stand in log.csv; they outlive it
   const control::TouchedPoints* touched_points = nullptr;          ///< null: touched_points.csv keeps its header alone
   long first_tick = 0;                                             ///< of the run, counted from its start
 };

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "framework/description/link_shape.h"
 #include "tests/tasks/task_world.h"
 
 namespace tactus::test {
@@ -31,6 +32,38 @@ TEST(MakeContact, TheReferenceMovesByTheMeanOfNormalAndDirection) {
     const Eigen::Vector3d v = lambda * (Eigen::Vector3d(0, 0, -1) + u).normalized();
     EXPECT_LT((rows.force.segment<3>(3 * j) - 5 * v * world.dt).norm(), 1e-12) << "thesis 4.4.1, 4.3.5 after one tick";
   }
+}
+
+// The dominant patches of a grasp say where to go, before anything touches.
+TEST(MakeContact, AGraspClosesAlongItsOpposition) {
+  TaskWorld world;
+  world.feel();
+  const auto task = world.make("make-contact", {{"on", "touch.missing"}, {"speed", "0.05"}, {"damping", "0"},
+                                                {"patch", "middle_medial"}, {"opposing-patch", "thumb_distal"},
+                                                {"opposing", "index_distal"}});
+  auto rows = world.rowsFor(*task);
+  task->update(world.tick(), rows);
+  const auto& missing = port<MissingSet>(world, "missing").points;
+  ASSERT_EQ(rows.rows, 3 * static_cast<int>(missing.size()));
+  const auto middle = [&](const char* name) {
+    const int frame = world.model.frameIndex(name);
+    return Eigen::Vector3d(world.tick().robot.framePose(frame) *
+                           description::middleOf(world.robot.links[static_cast<std::size_t>(frame)]));
+  };
+  const Eigen::Vector3d across = (middle("thumb_distal") - middle("middle_medial")).normalized();
+  int against = 0;
+  for (std::size_t j = 0; j < missing.size(); ++j) {
+    const bool opposing = missing[j].frame == world.model.frameIndex("index_distal");
+    against += opposing;
+    EXPECT_LT((rows.force.segment<3>(3 * j) - 5 * (opposing ? -0.05 : 0.05) * across * world.dt).norm(), 1e-12);
+  }
+  EXPECT_EQ(against, 1);
+}
+
+TEST(MakeContact, AGraspHasTwoSides) {
+  TaskWorld world;
+  EXPECT_THROW(world.make("make-contact", {{"on", "touch.missing"}, {"patch", "palm"}, {"opposing-patch", "palm"}}),
+               control::ElementError);
 }
 
 TEST(MakeContact, ABlockedLinkDoesNotWindItsReferenceUp) {
