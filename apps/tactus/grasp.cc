@@ -118,7 +118,7 @@ void addGrasp(CLI::App& program, Context& context) {
 Example: a ball between two fingers
   echo '{"friction": 0.5, "contacts": [{"position": [1, 0, 0], "normal": [-1, 0, 0]},
         {"position": [-1, 0, 0], "normal": [1, 0, 0]}]}' > pinch.json
-  tactus grasp pinch.json --json)");
+  tactus grasp pinch.json)");
   command->callback([=, &context] { context.action = [=, &context] { return printGrasp(*file, context.json); }; });
 }
 

@@ -121,6 +121,16 @@ TEST_F(Lawless, Controllers) {
   EXPECT_BREAKS("lawless.owner-frame", "frame", "the moved robot's joint torques differ");
 }
 
+TEST_F(Lawless, Measures) {
+  EXPECT_TRUE(check("lawless.gauge-good").conforms()) << check("lawless.gauge-good").text();
+  EXPECT_BREAKS("lawless.gauge-figures-none", "figures", "it has no figure and no column");
+  EXPECT_BREAKS("lawless.gauge-figures-renamed", "figures", "its figure 'sum_N' becomes 'force'");
+  EXPECT_BREAKS("lawless.gauge-figures", "figures", "its figure 'inverse' is infinite");
+  EXPECT_BREAKS("lawless.gauge-allocation", "allocation", "took memory 1 times");
+  EXPECT_BREAKS("lawless.gauge-determinism", "determinism", "a second instance said something else");
+  EXPECT_BREAKS("lawless.gauge-state", "state", "");
+}
+
 TEST_F(Lawless, Recorders) {
   EXPECT_TRUE(check("lawless.tally-good").conforms()) << check("lawless.tally-good").text();
   EXPECT_BREAKS("lawless.tally-files", "files", "it left no file in the run folder");

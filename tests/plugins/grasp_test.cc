@@ -102,7 +102,7 @@ TEST(GraspWrenchSpace, EdgesOfAConeAreAsWritten) {
 
 class GraspLaws : public ::testing::TestWithParam<int> {
  protected:
-  std::vector<GraspContact> grasp = randomGrasp(static_cast<unsigned>(GetParam()), 4 + GetParam() % 4);
+  std::vector<GraspContact> grasp = randomGrasp(static_cast<unsigned>(GetParam()), 4 + GetParam() % 3);
 };
 
 TEST_P(GraspLaws, VolumeGoesWithTheScaleToMinusThree) {
@@ -123,9 +123,8 @@ TEST_P(GraspLaws, AContactMoreNeverLowers) {
 // About x̂ the tangents turn with the normals, where no normal is near it.
 TEST_P(GraspLaws, AGraspThatIsTurnedWithItsTangentsIsTheSame) {
   for (GraspContact& contact : grasp) {
-    contact.normal.x() *= 0.5;
-    contact.normal.normalize();
-    if (std::abs(contact.normal.x()) > 0.85) GTEST_SKIP() << "a normal near x̂";
+    contact.normal.x() = 0.5 * std::tanh(contact.normal.x());
+    contact.normal.tail<2>() *= std::sqrt(1 - contact.normal.x() * contact.normal.x()) / contact.normal.tail<2>().norm();
   }
   const GraspWrenchSpace before = graspWrenchSpace(grasp, optionsOf(0.4));
   const Eigen::AngleAxisd turn(0.7, Vector3d::UnitX());
@@ -170,7 +169,7 @@ TEST_P(GraspLaws, RepeatsToTheBit) {
   EXPECT_EQ(one.epsilon, two.epsilon);
 }
 
-INSTANTIATE_TEST_SUITE_P(RandomGrasps, GraspLaws, ::testing::Range(0, 12));
+INSTANTIATE_TEST_SUITE_P(RandomGrasps, GraspLaws, ::testing::Range(0, 8));
 
 TEST(GraspWrenchSpace, RefusesWhatIsNoGrasp) {
   const std::vector<GraspContact> good{{Vector3d::UnitX(), -Vector3d::UnitX()}};

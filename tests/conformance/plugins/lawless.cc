@@ -189,6 +189,35 @@ class Tally final : public Observer {
   double sum_ = 0;
 };
 
+/// Sums forces over ticks.
+class Gauge final : public Measure {
+ public:
+  explicit Gauge(std::string fault) : fault_(std::move(fault)) {}
+  void metrics(std::vector<Metric>& metrics) const override {
+    if (fault_ == "figures-none") return;
+    metrics.push_back({fault_ == "figures-renamed" && ticks_ > 3 ? "force" : "sum_N", sum_});
+    if (fault_ == "figures") metrics.push_back({"inverse", 1 / static_cast<double>(ticks_ > 5 ? 0 : 1)});
+  }
+
+ private:
+  void doObserve(const ObservedTick& tick) override {
+    static int calls = 0;
+    for (const ContactRecord& contact : tick.truth.contacts) sum_ += contact.force_N;
+    if (fault_ == "allocation") copy_ = std::make_unique<double>(sum_);
+    if (fault_ == "determinism") sum_ += ++calls;
+    ++ticks_;
+  }
+  void doArchive(Archive& archive) override {
+    archive("ticks", ticks_);
+    if (fault_ != "state") archive("sum", sum_);
+  }
+
+  std::string fault_;
+  double sum_ = 0;
+  long ticks_ = 0;
+  std::unique_ptr<double> copy_;
+};
+
 void registerParts(Registry& registry) {
   const auto rowOf = [](const std::string& name) {
     ElementRow row;
@@ -218,6 +247,9 @@ void registerParts(Registry& registry) {
       return level;
     });
   }
+  for (const std::string fault :
+       {"good", "figures", "figures-none", "figures-renamed", "allocation", "determinism", "state"})
+    registry.addMeasure(rowOf("gauge-" + fault), [fault](const MeasureContext&) { return std::make_unique<Gauge>(fault); });
   for (const std::string fault : {"good", "files", "files-throws", "determinism"})
     registry.addRecorder(rowOf("tally-" + fault), [fault](const RecorderContext& context) {
       return std::make_unique<Tally>(context, fault);
