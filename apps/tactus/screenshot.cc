@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds patience{60};
+constexpr std::chrono::minutes patience{5};                        // without a graphics card, on a busy machine
 
 /// Path of the first that there is; "" without any.
 std::string findBrowser() {
@@ -98,7 +98,7 @@ void takeScreenshot(const std::string& address, const std::string& png, PictureS
   if (::geteuid() == 0) words.insert(words.begin() + 1, "--no-sandbox");  // Chromium refuses root a sandbox
   const pid_t process = start(words);
   if (process == 0) throw runtime::FileError(png, "cannot be made: " + browser + " does not start");
-  if (!waitFor(process)) throw runtime::FileError(png, "cannot be made: " + browser + " took longer than a minute");
+  if (!waitFor(process)) throw runtime::FileError(png, "cannot be made: " + browser + " took longer than five minutes");
   if (!fs::exists(picture)) throw runtime::FileError(png, "cannot be made: " + browser + " made no picture of " + address);
   runtime::writeFile(png, runtime::readFile(picture));
 }
