@@ -28,6 +28,9 @@ std::string timeText(double seconds);
 /// A table with aligned columns: the first to the left, all others to the right; the first row is the head.
 std::string textTable(const std::vector<std::vector<std::string>>& rows);
 
+/// RFC 4648, with its padding.
+std::string base64(std::string_view bytes);
+
 /// The document, whatever bytes its texts hold: what is not UTF-8 becomes U+FFFD.  Without indent in one line.
 std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);
 
