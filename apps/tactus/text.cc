@@ -11,12 +11,6 @@
 namespace tactus::app {
 namespace {
 
-/// Characters of UTF-8 text.
-size_t width(std::string_view text) {
-  return static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 double parseNumber(const std::string& word, const std::string& what) {
   double value = 0;
   const char* end = word.data() + word.size();
@@ -87,6 +81,19 @@ std::string textTable(const std::vector<std::vector<std::string>>& rows) {
     text += line + "\n";
   }
   return text;
+}
+
+std::string clockText(double seconds) {
+  const long all = std::lround(std::min(seconds, 1e15));
+  const auto two = [](long number) { return (number < 10 ? "0" : "") + std::to_string(number); };
+  const std::string minutes =
+      all < 3600 ? std::to_string(all / 60) : std::to_string(all / 3600) + ":" + two(all / 60 % 60);
+  return minutes + ":" + two(all % 60);
+}
+
+size_t width(std::string_view text) {
+  return static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 std::string timeText(double seconds) { return control::formatNumber(std::round(seconds * 1e9) / 1e9); }

@@ -25,6 +25,12 @@ std::string rounded(double value, int digits = 4);
 /// A simulated time to the nanosecond, without the rounding of sums: "0.35".
 std::string timeText(double seconds);
 
+/// Of a duration: "0:07", "2:05", "1:02:05".
+std::string clockText(double seconds);
+
+/// Characters of UTF-8 text.
+size_t width(std::string_view text);
+
 /// A table with aligned columns: the first to the left, all others to the right; the first row is the head.
 std::string textTable(const std::vector<std::vector<std::string>>& rows);
 
