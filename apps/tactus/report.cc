@@ -284,7 +284,7 @@ void writePictures(const ReportArguments& arguments, const std::string& page) {
   fs::create_directories(arguments.png, error);
   if (error) throw runtime::FileError(arguments.png, "cannot be made a folder: " + error.message());
   take(fileAddress(page) + scene, arguments.png + "/scene.png", {width, 800});
-  take(fileAddress(page) + "#figure=plots&at=" + control::formatNumber(at), arguments.png + "/plots.png", {900, 880});
+  take(fileAddress(page) + "#figure=plots&at=" + control::formatNumber(at), arguments.png + "/plots.png", {900, 1000});
   if (!arguments.beside.empty()) return;
   for (const std::string name : {"contacts", "touched_points"})
     take(fileAddress(arguments.folder + "/" + name + ".svg"), arguments.png + "/" + name + ".png", {1100, 560});

@@ -78,6 +78,7 @@ export class View {
     this.host = host;
     this.run = run;
     this.forceScale = forceScale;
+    this.time = 0;
     this.shown = {forces: true, points: true, references: true};
     this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(window.devicePixelRatio);
@@ -222,7 +223,7 @@ export class View {
     }
   }
 
-  /** What the cameras aim at: the robot with all objects, and the hand where it touched. */
+  /** What the cameras aim at: the robot with all objects, and where the run touched. */
   #measure() {
     const whole = new THREE.Box3().setFromObject(this.robot);
     for (const {group} of this.objects.values()) {
@@ -230,14 +231,25 @@ export class View {
       const size = box.getSize(new THREE.Vector3());
       if (Math.max(size.x, size.y, size.z) < 2.5) whole.union(box);
     }
-    const hand = new THREE.Box3();
-    for (let row = 0; row < this.run.contacts.length; row += 9) {
-      hand.expandByPoint(new THREE.Vector3(...this.run.contacts.subarray(row + 3, row + 6)));
-    }
-    if (hand.isEmpty()) hand.copy(whole);
-    else hand.expandByScalar(0.03);
     if (whole.isEmpty()) whole.set(new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 1));
-    this.boxes = {whole, hand: hand.isEmpty() ? whole : hand};
+    this.boxes = {whole, touched: this.#touchedBox(0, this.run.count)};
+  }
+
+  /** Around all touches of these frames; empty where there are none. */
+  #touchedBox(from, to) {
+    const box = new THREE.Box3();
+    for (let row = this.run.firstContact[from]; row < this.run.firstContact[to]; ++row) {
+      box.expandByPoint(new THREE.Vector3(...this.run.contacts.subarray(9 * row + 3, 9 * row + 6)));
+    }
+    return box.isEmpty() ? box : box.expandByScalar(0.05);
+  }
+
+  /** Where the hand touches about now, or where the run touched at all. */
+  #handBox() {
+    if (!this.run.count) return this.boxes.whole;
+    const [frame] = this.run.frameAt(this.time);
+    const now = this.#touchedBox(Math.max(0, frame - 5), Math.min(this.run.count, frame + 6));
+    return [now, this.boxes.touched, this.boxes.whole].find((box) => !box.isEmpty());
   }
 
   #addGround() {
@@ -269,7 +281,7 @@ export class View {
   }
 
   setCamera(name) {
-    const box = name === 'hand' ? this.boxes.hand : this.boxes.whole;
+    const box = name === 'hand' ? this.#handBox() : this.boxes.whole;
     const target = box.getCenter(new THREE.Vector3());
     const radius = box.getSize(new THREE.Vector3()).length() / 2;
     const narrow = Math.min(1, this.camera.aspect);
@@ -289,6 +301,7 @@ export class View {
 
   show(time) {
     const {run} = this;
+    this.time = time;
     if (!run.count) return this.draw();
     const [frame] = run.frameAt(time);
     for (const part of [...this.links.values(), ...this.objects.values()]) {
