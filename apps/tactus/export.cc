@@ -18,7 +18,8 @@ void addExport(CLI::App& program, Context& context) {
   CLI::App* command = program.add_subcommand("export", "Write a run as a file for other programs");
   const auto arguments = std::make_shared<ExportArguments>();
   command->add_option("RUN", arguments->run, "Folder of a run")->required()->type_name("RUN");
-  command->add_option("--mcap", arguments->mcap, "MCAP, which Foxglove opens: scene, frames, contacts and the log's columns")
+  command
+      ->add_option("--mcap", arguments->mcap, "MCAP, which Foxglove opens: scene, frames, contacts, the log's columns")
       ->required()
       ->type_name("FILE");
   command->footer(R"(The same run gives the same bytes.  A run that was cut off is written as far as it came.

@@ -35,7 +35,7 @@ constexpr Pose identity{0, 0, 0, 1, 0, 0, 0};
 constexpr Colour plain{0.91, 0.91, 0.88, 1}, skin{0.4, 0.52, 0.6, 1}, force_colour{0.84, 0.16, 0.12, 1},
     mark_colour{0.76, 0.09, 0.5, 1};
 constexpr std::array<Colour, 3> object_colours{{{0.85, 0.78, 0.64, 1}, {0.66, 0.75, 0.58, 1}, {0.72, 0.65, 0.81, 1}}};
-constexpr double usual_arrow = 0.07;                               // m, of the force that nine of ten contacts stay below
+constexpr double usual_arrow = 0.07;                               // m, of the force that nine of ten stay below
 constexpr double cloud_growth = 1.02;                              // from one message to the next
 
 /// The times of a table's rows, which rise.
@@ -176,11 +176,13 @@ ordered_json linkEntity(const ordered_json& link, const std::string& frame, Nano
   return json;
 }
 
-ordered_json objectEntity(const ordered_json& object, const std::string& frame, const Colour& colour, Nanoseconds time) {
+ordered_json objectEntity(const ordered_json& object, const std::string& frame, const Colour& colour,
+                          Nanoseconds time) {
   ordered_json json = entity(time, frame, "object/" + object["name"].get<std::string>());
   ordered_json points = ordered_json::array();
-  for (size_t i = 0; i < object["vertices"].size(); i += 3)
-    points.push_back({{"x", object["vertices"][i]}, {"y", object["vertices"][i + 1]}, {"z", object["vertices"][i + 2]}});
+  const ordered_json& numbers = object["vertices"];
+  for (size_t i = 0; i < numbers.size(); i += 3)
+    points.push_back({{"x", numbers[i]}, {"y", numbers[i + 1]}, {"z", numbers[i + 2]}});
   json["triangles"].push_back({{"pose", toJson(frame == world ? numbersOf<7>(object["pose"]) : identity)},
                                {"points", points},
                                {"color", toJson(colour)},
@@ -236,7 +238,8 @@ Stream contactStream(Schemas& schemas, const CsvTable& contacts, std::vector<Nan
     const int link = contacts.column("link"), on = contacts.column("on");
     if (link < 0 || on < 0) throw runtime::FileError(contacts.path(), "has no column 'link' or 'on'");
     std::vector<std::vector<double>> numbers;
-    for (const char* column : {"x", "y", "z", "force_x", "force_y", "force_z"}) numbers.push_back(contacts.numbers(column));
+    for (const char* column : {"x", "y", "z", "force_x", "force_y", "force_z"})
+      numbers.push_back(contacts.numbers(column));
     for (size_t row = 0; row < times.size(); ++row) {
       touches.push_back({contacts.cell(row, link) + " on " + contacts.cell(row, on),
                          {numbers[0][row], numbers[1][row], numbers[2][row]},
@@ -257,8 +260,8 @@ Stream contactStream(Schemas& schemas, const CsvTable& contacts, std::vector<Nan
                         {"head_diameter", 0.8 * head},
                         {"color", toJson(force_colour)}};
   };
-  return {std::move(frames), [&mcap = schemas.mcap, channel, toArrow, times, touches = std::move(touches), next = size_t{0}](
-                                 size_t, Nanoseconds time) mutable {
+  return {std::move(frames), [&mcap = schemas.mcap, channel, toArrow, times, touches = std::move(touches),
+                              next = size_t{0}](size_t, Nanoseconds time) mutable {
             ordered_json arrows = entity(time, world, "contacts");
             for (; next < times.size() && times[next] <= time; ++next) {
               const Touch& touch = touches[next];
@@ -316,21 +319,21 @@ void addTouched(std::vector<Stream>& streams, Schemas& schemas, const CsvTable& 
   std::vector<size_t> counts;
   for (size_t i = 0; i < all.size(); ++i) {
     const bool last = i + 1 == all.size();
-    if (!last && (all[i + 1] == all[i] || static_cast<double>(i + 1) < cloud_growth * static_cast<double>(counts.empty() ? 0 : counts.back())))
-      continue;
+    const double told = counts.empty() ? 0 : static_cast<double>(counts.back());
+    if (!last && (all[i + 1] == all[i] || static_cast<double>(i + 1) < cloud_growth * told)) continue;
     times.push_back(all[i]);
     counts.push_back(i + 1);
   }
   const auto channel = schemas.mcap.addChannel("/touched", schemas.of(foxglove::pointCloud()));
   streams.push_back({std::move(times), [&mcap = schemas.mcap, channel, fields, bytes = std::move(bytes), stride,
                                         counts = std::move(counts)](size_t row, Nanoseconds time) {
-                       mcap.write(channel, time,
-                                  jsonText({{"timestamp", timeToJson(time)},
-                                            {"frame_id", world},
-                                            {"pose", toJson(identity)},
-                                            {"point_stride", stride},
-                                            {"fields", fields},
-                                            {"data", base64(std::string_view(bytes).substr(0, stride * counts[row]))}}));
+                       const std::string_view until = std::string_view(bytes).substr(0, stride * counts[row]);
+                       mcap.write(channel, time, jsonText({{"timestamp", timeToJson(time)},
+                                                           {"frame_id", world},
+                                                           {"pose", toJson(identity)},
+                                                           {"point_stride", stride},
+                                                           {"fields", fields},
+                                                           {"data", base64(until)}}));
                      }});
 }
 

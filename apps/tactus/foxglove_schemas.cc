@@ -48,7 +48,9 @@ ordered_json duration() { return clock("duration", {{"type", "integer"}}); }
 
 ordered_json vector3() { return message("Vector3", {{"x", number}, {"y", number}, {"z", number}}); }
 ordered_json point3() { return message("Point3", {{"x", number}, {"y", number}, {"z", number}}); }
-ordered_json quaternion() { return message("Quaternion", {{"x", number}, {"y", number}, {"z", number}, {"w", number}}); }
+ordered_json quaternion() {
+  return message("Quaternion", {{"x", number}, {"y", number}, {"z", number}, {"w", number}});
+}
 ordered_json pose() { return message("Pose", {{"position", vector3()}, {"orientation", quaternion()}}); }
 ordered_json color() { return message("Color", {{"r", number}, {"g", number}, {"b", number}, {"a", number}}); }
 
@@ -122,9 +124,8 @@ ordered_json frameTransforms() {
 }
 
 ordered_json sceneUpdate() {
-  const ordered_json deletion =
-      message("SceneEntityDeletion",
-              {{"timestamp", time()}, {"type", choice("SceneEntityDeletionType", {"MATCHING_ID", "ALL"})}, {"id", text}});
+  const ordered_json kind = choice("SceneEntityDeletionType", {"MATCHING_ID", "ALL"});
+  const ordered_json deletion = message("SceneEntityDeletion", {{"timestamp", time()}, {"type", kind}, {"id", text}});
   return message("SceneUpdate", {{"deletions", arrayOf(deletion)}, {"entities", arrayOf(sceneEntity())}});
 }
 

@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-/// JSON schemas of messages that Foxglove knows by name (https://docs.foxglove.dev/docs/sdk/schemas), as it publishes them
-/// less their descriptions.  Every property is required.
+/// JSON schemas of messages that Foxglove knows by name (https://docs.foxglove.dev/docs/sdk/schemas), as it publishes
+/// them less their descriptions.  Every property is required.
 namespace tactus::app::foxglove {
 
 nlohmann::ordered_json frameTransforms();

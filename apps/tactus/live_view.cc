@@ -39,7 +39,8 @@ std::string fitted(const std::string& text, size_t characters) {
 /// A bar of up to `characters`, in eighths of one.
 std::string bar(double fraction, size_t characters) {
   static const char* const eighths[] = {"", "▏", "▎", "▍", "▌", "▋", "▊", "▉"};
-  const auto units = static_cast<size_t>(std::lround(8 * static_cast<double>(characters) * std::clamp(fraction, 0.0, 1.0)));
+  const double eighths_in_all = 8 * static_cast<double>(characters);
+  const auto units = static_cast<size_t>(std::lround(eighths_in_all * std::clamp(fraction, 0.0, 1.0)));
   std::string text;
   for (size_t i = 0; i < units / 8; ++i) text += "█";
   return text + eighths[units % 8];
@@ -112,7 +113,8 @@ std::vector<std::string> liveTable(const LiveState& state, size_t width, size_t 
   return lines;
 }
 
-LiveView::LiveView(const description::Robot& robot, const runtime::ContactMetrics& contacts, double from, double duration)
+LiveView::LiveView(const description::Robot& robot, const runtime::ContactMetrics& contacts, double from,
+                   double duration)
     : robot_(robot),
       contacts_(contacts),
       from_(from),

@@ -22,7 +22,7 @@ struct LiveLink {
 /// How a run stands.
 struct LiveState {
   double time = 0, duration = 0;                                   ///< s
-  double rate = 0;                                                 ///< simulated seconds in one of the wall clock; 0: not known yet
+  double rate = 0;                                                 ///< × real time; 0: not known yet
   runtime::ContactMetrics::Now now;
   std::vector<LiveLink> links;                                     ///< those that have touched, in the robot's order
 };
@@ -34,9 +34,9 @@ std::string liveForces(const LiveState& state);
 /// These two, and a row for each link with a bar for its force: at most `height` lines of at most `width` characters.
 std::vector<std::string> liveTable(const LiveState& state, size_t width, size_t height);
 
-/// Contacts and forces on stderr as a run goes.  On a terminal a table, drawn anew five times a second and taken away at
-/// the end; nothing of the terminal's settings is touched.  Elsewhere a line at every tenth of the run, and after every
-/// 30 s of the wall clock without one.
+/// Contacts and forces on stderr as a run goes.  On a terminal a table, drawn anew five times a second and taken away
+/// at the end; nothing of the terminal's settings is touched.  Elsewhere a line at every tenth of the run, and after
+/// every 30 s of the wall clock without one.
 class LiveView final : public control::Observer {
  public:
   /// `robot` and `contacts`, which observes before, outlive it; `from`, s, is where the run begins.

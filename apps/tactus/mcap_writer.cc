@@ -115,7 +115,8 @@ std::uint16_t McapWriter::addSchema(const std::string& name, const std::string& 
 
 std::uint16_t McapWriter::addChannel(const std::string& topic, std::uint16_t schema) {
   const auto number = static_cast<std::uint16_t>(channels_.size());
-  channels_.push_back({record(Record::channel, Bytes().u16(number).u16(schema).text(topic).text("json").u32(0)), 0, {}});
+  const Bytes content = Bytes().u16(number).u16(schema).text(topic).text("json").u32(0);
+  channels_.push_back({record(Record::channel, content), 0, {}});
   chunk_ += channels_.back().record;
   return number;
 }
@@ -216,8 +217,8 @@ void McapWriter::close() {
   put(offsets.get());
 
   // The footer's checksum covers all of it up to the checksum itself.
-  const std::string before = Bytes().u8(static_cast<std::uint8_t>(Record::footer)).u64(20).u64(summary).u64(summary_offsets).get();
-  put(before);
+  constexpr std::uint64_t footer_size = 8 + 8 + 4;
+  put(Bytes().u8(static_cast<std::uint8_t>(Record::footer)).u64(footer_size).u64(summary).u64(summary_offsets).get());
   put(Bytes().u32(checksum_).get());
   put(magic);
   const int descriptor = descriptor_;

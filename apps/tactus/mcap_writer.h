@@ -8,10 +8,10 @@
 
 namespace tactus::app {
 
-/// Writes an MCAP file (https://mcap.dev/spec, version 0): messages of channels in uncompressed chunks, each chunk with an
-/// index for every channel, checksums of chunks, data and summary, and a summary that repeats schemas and channels.  The
-/// bytes follow from the calls alone.  The file bears its name from close() on; until then it is <path>.new.
-/// Throws FileError when it cannot be written.
+/// Writes an MCAP file (https://mcap.dev/spec, version 0): messages of channels in uncompressed chunks, each chunk with
+/// an index for every channel, checksums of chunks, data and summary, and a summary that repeats schemas and channels.
+/// The bytes follow from the calls alone.  The file bears its name from close() on; until then it is <path>.new. Throws
+/// FileError when it cannot be written.
 class McapWriter {
  public:
   /// `library`: what writes it, for people.

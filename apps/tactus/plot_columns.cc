@@ -128,9 +128,11 @@ int plotColumns(const PlotArguments& arguments) {
   if (!arguments.out.empty() && kind != ".svg" && kind != ".png")
     throw UsageError("--out " + arguments.out + ": a plot is an .svg or a .png");
   const runtime::CsvTable table = runtime::CsvTable::read(log);
-  if (table.endsWithinLine()) std::cerr << "tactus plot: warning: " << log << " ends within a line, which is left out\n";
+  if (table.endsWithinLine())
+    std::cerr << "tactus plot: warning: " << log << " ends within a line, which is left out\n";
   if (arguments.columns.empty()) {
-    if (!arguments.out.empty()) throw UsageError("--out " + arguments.out + ": which columns?  Without any, their names are listed");
+    if (!arguments.out.empty())
+      throw UsageError("--out " + arguments.out + ": which columns?  Without any, their names are listed");
     for (const std::string& name : table.columns()) std::cout << name << "\n";
     return exit_done;
   }
@@ -150,7 +152,7 @@ void addPlot(CLI::App& program, Context& context) {
       ->required()
       ->type_name("RUN");
   command
-      ->add_option("COLUMN", arguments->columns, "A panel each; columns between commas share one; without any: their names")
+      ->add_option("COLUMN", arguments->columns, "A panel each; columns between commas share one; without any: names")
       ->type_name("COLUMN");
   command->add_option("--out", arguments->out, "File, .svg or .png; SVG on stdout without it")->type_name("FILE");
   command->footer(R"(Examples:

@@ -9,8 +9,8 @@
 
 namespace tactus::app {
 
-/// What a run wrote as it went.  A table that is not there is empty: of one that was cut off any, and of every run those
-/// of the replay.
+/// What a run wrote as it went.  A table that is not there is empty: of one that was cut off any, and of every run
+/// those of the replay.
 struct RunRecord {
   std::string folder;
   std::string file;                                                ///< run.json

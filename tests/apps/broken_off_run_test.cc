@@ -24,7 +24,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string explore = std::string(TACTUS_SOURCE_DIR) + "/examples/explore_table/stack.xml";
-const std::vector<std::string> tables{"log.csv", "timing.csv", "touched_points.csv", "replay.csv", "replay_contacts.csv"};
+const std::vector<std::string> tables{"log.csv", "timing.csv", "touched_points.csv", "replay.csv",
+                                      "replay_contacts.csv"};
 
 /// Every table that is there can be read, and its times rise.
 void expectReadable(const std::string& run) {
@@ -60,7 +61,8 @@ TEST(KilledRun, AtAnyMomentLeavesWhatCanBeRead) {
     const TemporaryFolder folder;
     const std::string run = folder.file("run");
     RunningProgram program({"run", explore, "--duration", "3600", "--out", run});
-    for (int i = 0; i < 2000 && !fs::exists(run + "/run.json"); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    for (int i = 0; i < 2000 && !fs::exists(run + "/run.json"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     program.send(SIGKILL);
     EXPECT_EQ(program.wait().exit_code, 128 + SIGKILL);
@@ -94,7 +96,7 @@ TEST(KilledRun, LosesAtMostASecondOfTheWallClock) {
   const auto killed = Clock::now();
   EXPECT_EQ(program.wait(), 128 + SIGKILL);
 
-  double known = 0;                                                // s, simulated a second of the wall clock and more ago
+  double known = 0;                                                // s, simulated more than a second ago
   for (const Told& one : told)
     if (killed - one.at > std::chrono::milliseconds(1300)) known = one.time;
   ASSERT_GT(known, 0.5);
@@ -128,7 +130,8 @@ TEST(KilledRun, ALineThatWasBrokenOffIsLeftOutAloud) {
     const Outcome outcome = tactus({"report", run});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("warning: " + run + "/" + name + " ends within a line, which is left out"));
-    EXPECT_THAT(contentOf(run + "/report.html"), HasSubstr(std::string(name) + " ends within a line, which is left out."));
+    EXPECT_THAT(contentOf(run + "/report.html"),
+                HasSubstr(std::string(name) + " ends within a line, which is left out."));
     std::ofstream(run + "/" + name, std::ios::binary) << good;
   }
 }
@@ -174,8 +177,8 @@ TEST(FullDisk, OnASmallFileSystem) {
     const std::string left = folder.file(size);
     const std::string command = "mount -t tmpfs -o size=" + std::string(size) + " tmpfs " + disk + " && {  " +
                                 TACTUS_BINARY_DIR "/bin/tactus run " + explore + " --duration 10 --out " + disk +
-                                "/run 2> " + folder.file("err") + " > /dev/null; code=$?; cp -r " + disk + "/run " + left +
-                                "; exit $code; }";
+                                "/run 2> " + folder.file("err") + " > /dev/null; code=$?; cp -r " + disk + "/run " +
+                                left + "; exit $code; }";
     std::ofstream(script) << command;
     const int status = std::system(("unshare -rm sh " + script).c_str());
     Outcome outcome{WEXITSTATUS(status), "", contentOf(folder.file("err"))};

@@ -1,7 +1,8 @@
 // Tables of a run as other programs read them.  PlotJuggler's loader (DataLoadCSV, csv_parser.cpp and
-// timestamp_parsing.cpp) takes the first line for names, which it changes where two are alike; splits at the one of tab,
-// semicolon, comma and blank that the first line has most of; skips lines with another number of cells; tells a column's
-// kind by its first cell, a number being digits, a sign and a point, no exponent; and says so when times go back.
+// timestamp_parsing.cpp) takes the first line for names, which it changes where two are alike; splits at the one of
+// tab, semicolon, comma and blank that the first line has most of; skips lines with another number of cells; tells a
+// column's kind by its first cell, a number being digits, a sign and a point, no exponent; and says so when times go
+// back.
 
 #include <gmock/gmock.h>
 

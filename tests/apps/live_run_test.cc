@@ -62,16 +62,18 @@ TEST(LiveRun, ALineAtEveryTenthWhereThereIsNoTerminal) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, Not(HasSubstr("\033")));
   for (int tenth = 1; tenth <= 10; ++tenth)
-    EXPECT_THAT(outcome.err, HasSubstr("tactus run: " + std::to_string(tenth / 10) + "." + std::to_string(tenth % 10) + " of 1.0 s, "));
+    EXPECT_THAT(outcome.err, HasSubstr("tactus run: " + std::to_string(tenth / 10) + "." + std::to_string(tenth % 10) +
+                                       " of 1.0 s, "));
   EXPECT_THAT(outcome.err, HasSubstr(" left: 1 link, mean "));
 }
 
 /// Tenths are those of what is left to run.
 TEST(LiveRun, ARunThatGoesOn) {
   const TemporaryFolder folder;
-  ASSERT_EQ(tactus({"run", data("press.xml"), "--duration", "1", "--save-at", "0.8", "--out", folder.file("run")}).exit_code, 0);
-  const Outcome outcome = tactus({"run", data("press.xml"), "--live", "--duration", "1", "--out", folder.file("rest"), "--from",
-                                  folder.file("run/state-0.8.json")});
+  const std::string stack = data("press.xml"), state = folder.file("run/state-0.8.json");
+  ASSERT_EQ(tactus({"run", stack, "--duration", "1", "--save-at", "0.8", "--out", folder.file("run")}).exit_code, 0);
+  const Outcome outcome =
+      tactus({"run", stack, "--live", "--duration", "1", "--out", folder.file("rest"), "--from", state});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   size_t lines = 0;
   for (size_t at = 0; (at = outcome.err.find(" of 1.0 s, ", at)) != std::string::npos; ++at) ++lines;

@@ -1,5 +1,6 @@
-// A run as MCAP, read back by MCAP's own library: streamed and by index, all checksums and schemas checked, and the values
-// held against the files they are from.  Exit code 77, which CTest counts as skipped, where that library is not installed.
+// A run as MCAP, read back by MCAP's own library: streamed and by index, all checksums and schemas checked, and the
+// values held against the files they are from.  Exit code 77, which CTest counts as skipped, where that library is not
+// installed.
 //
 //   node mcap_export.mjs TACTUS SOURCE_FOLDER NODE_MODULES
 
@@ -120,7 +121,8 @@ test('both readers find the same messages in the same order, and the statistics 
   assert.ok(reader.chunkIndexes.length > 1, 'more than one chunk');
   assert.equal(reader.statistics.channelCount, topics.size);
   for (const [id, channel] of reader.channelsById) {
-    assert.equal(reader.statistics.channelMessageCounts.get(id), BigInt(topics.get(channel.topic).length), channel.topic);
+    const counted = reader.statistics.channelMessageCounts.get(id);
+    assert.equal(counted, BigInt(topics.get(channel.topic).length), channel.topic);
   }
   assert.deepEqual([...reader.summaryOffsetsByOpcode.keys()].sort((a, b) => a - b), [3, 4, 8, 11, 13]);
   const facts = [];
@@ -129,7 +131,8 @@ test('both readers find the same messages in the same order, and the statistics 
 
   // A jump in time reads what is there, and no more.
   const some = [];
-  for await (const message of reader.readMessages({topics: ['/contact'], startTime: 2_000_000_000n, endTime: 2_090_000_000n})) {
+  const wanted = {topics: ['/contact'], startTime: 2_000_000_000n, endTime: 2_090_000_000n};
+  for await (const message of reader.readMessages(wanted)) {
     some.push(Number(message.logTime) / 1e9);
   }
   assert.deepEqual(some, [2, 2.01, 2.02, 2.03, 2.04, 2.05, 2.06, 2.07, 2.08, 2.09]);
@@ -153,7 +156,9 @@ test('every message keeps its schema, and Foxglove\'s are those that it publishe
     }
   }
   const names = [...reader.channelsById.values()].map((channel) => reader.schemasById.get(channel.schemaId).name);
-  for (const name of ['SceneUpdate', 'FrameTransforms', 'PointCloud']) assert.ok(names.includes('foxglove.' + name), name);
+  for (const name of ['SceneUpdate', 'FrameTransforms', 'PointCloud']) {
+    assert.ok(names.includes('foxglove.' + name), name);
+  }
 });
 
 test('every number of log.csv is there, at its time, under the name of its column', () => {
@@ -186,7 +191,7 @@ test('frames and contacts are those of the replay', () => {
   assert.equal(transforms.length, replay.rows.length);
   transforms.forEach(({transforms: of}, row) => {
     assert.deepEqual(of.map((one) => one.child_frame_id).sort(),
-      [...scene.links.map((link) => link.name), ...scene.objects.filter((one) => one.moves).map((one) => one.name)].sort());
+      [...scene.links, ...scene.objects.filter((one) => one.moves)].map((one) => one.name).sort());
     for (const one of of) {
       assert.equal(one.parent_frame_id, 'world');
       const at = replay.columns.indexOf(`link/${one.child_frame_id}/x`);
@@ -296,7 +301,8 @@ test('a run that was cut off is whole as far as it came', () => {
 });
 
 test('what cannot be written leaves nothing behind', () => {
-  const shell = (words, command) => spawnSync('sh', ['-c', command, 'sh', tactus, ...words], {cwd: folder, encoding: 'utf8'});
+  const shell = (words, command) =>
+    spawnSync('sh', ['-c', command, 'sh', tactus, ...words], {cwd: folder, encoding: 'utf8'});
   const full = shell(['export', 'run', '--mcap', 'full.mcap'], 'ulimit -f 64; exec "$@"');
   assert.equal(full.status, 6);
   assert.match(full.stderr, /full\.mcap: cannot be written: File too large/);

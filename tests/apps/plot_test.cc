@@ -89,7 +89,8 @@ TEST(Plot, AConstantHasARangeOfItsOwnSize) {
 
 TEST(Plot, KeysThatFillALineGoOnInTheNext) {
   LinePlot plot{"", "x", "y", {}, {}, "", false};
-  for (int i = 0; i < 9; ++i) plot.lines.push_back({"a/name/of/some/length/" + std::to_string(i), "blue", {0, 1}, {0, 1}});
+  for (int i = 0; i < 9; ++i)
+    plot.lines.push_back({"a/name/of/some/length/" + std::to_string(i), "blue", {0, 1}, {0, 1}});
   const std::string svg = draw(plot, box);
   expectWellFormed(svgDocument(600, 300, svg));
   for (size_t at = 0; (at = svg.find("h20'", at)) != std::string::npos; ++at) {

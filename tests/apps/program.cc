@@ -139,7 +139,8 @@ std::vector<std::string> screenOf(const std::string& output, size_t width) {
       i = end;
     } else {
       std::string character(1, output[i]);
-      while (i + 1 < output.size() && (static_cast<unsigned char>(output[i + 1]) & 0xC0) == 0x80) character += output[++i];
+      while (i + 1 < output.size() && (static_cast<unsigned char>(output[i + 1]) & 0xC0) == 0x80)
+        character += output[++i];
       EXPECT_LT(column, width) << "the line wraps";
       lines[row].resize(std::max(lines[row].size(), column + 1), " ");
       lines[row][column++] = character;

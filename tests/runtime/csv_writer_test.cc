@@ -34,7 +34,8 @@ TEST(CsvWriter, WritesTheseBytes) {
   writer.endRow();
   writer.close();
   EXPECT_EQ(contentOf(folder.file("a.csv")),
-            "time,task/reach/error,link\n0,0.1,palm\n1,-0.00000015,thumb\n10000000000000000000000,0.3333333333333333,\nnan,inf,-0\n");
+            "time,task/reach/error,link\n0,0.1,palm\n1,-0.00000015,thumb\n10000000000000000000000,0.3333333333333333,\n"
+            "nan,inf,-0\n");
 }
 
 TEST(CsvWriter, NumbersReadBackToTheSameBits) {
