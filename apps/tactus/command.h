@@ -47,6 +47,7 @@ void addGolden(CLI::App& program, Context& context);
 void addStudy(CLI::App& program, Context& context);
 void addPlugins(CLI::App& program, Context& context);
 void addExplain(CLI::App& program, Context& context);
+void addExport(CLI::App& program, Context& context);
 void addFormat(CLI::App& program, Context& context);
 void addMigrate(CLI::App& program, Context& context);
 void addGraph(CLI::App& program, Context& context);

@@ -87,6 +87,7 @@ int runCommand(int argc, char** argv) {
   addPlugins(app, context);
   addPlot(app, context);
   addReport(app, context);
+  addExport(app, context);
   addExplain(app, context);
   addGraph(app, context);
   addNew(app, context);

@@ -29,6 +29,13 @@ std::string fixed(double value, int decimals) {
           std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::fixed, decimals).ptr};
 }
 
+/// With an exponent where it is shorter so: 2e+06, 1.5e-07.
+std::string general(double value, int digits) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, value == 0 ? 0 : value, std::chars_format::general,
+                              std::clamp(digits, 1, 17)).ptr};
+}
+
 /// 10ⁿ as people write it: 0.01, 1, 1000, 1e-7.
 std::string decade(long n) {
   if (n < -3 || n > 4) return "1e" + std::to_string(n);
@@ -52,7 +59,8 @@ struct Range {
     if (!(lower <= upper)) *this = {0, 1};
     const double least = std::max(1e-12, 1e-9 * std::max(std::abs(lower), std::abs(upper)));
     if (length() <= 0) {
-      *this = {lower - std::max(0.5, least), upper + std::max(0.5, least)};
+      const double half = lower == 0 ? 0.5 : std::max(std::abs(lower) / 2, least);
+      *this = {lower - half, upper + half};
     } else if (length() < least) {
       *this = {lower - least / 2, upper + least / 2};
     }
@@ -136,8 +144,13 @@ class Frame {
   static void eachTick(const Range& range, int count, bool decades, Draw draw) {
     const double step = decades ? std::max(1.0, niceStep(range, count)) : niceStep(range, count);
     const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+    const double largest = std::max(std::abs(range.lower), std::abs(range.upper));
+    const bool short_enough = decimals <= 5 && largest < 1e6;
+    const int digits = static_cast<int>(std::ceil(std::log10(largest / step))) + 1;
     for (double k = std::ceil(range.lower / step - 1e-9); k * step <= range.upper + 1e-9 * step; ++k)
-      draw(k * step, decades ? decade(std::lround(k * step)) : fixed(k * step, decimals));
+      draw(k * step, decades        ? decade(std::lround(k * step))
+                     : short_enough ? fixed(k * step, decimals)
+                                    : general(k * step, digits));
   }
 
   Box box_, area_;
@@ -145,19 +158,29 @@ class Frame {
   bool decades_;
 };
 
-/// At most two points a pixel: the least and the largest value of each bucket, so that no peak is lost.
+/// At most two points a pixel: the least and the largest value of each bucket, so that no peak is lost.  A bucket
+/// without a value to draw is a gap.
 Line thinned(const Line& line, size_t buckets) {
   if (line.x.size() <= 2 * buckets) return line;
   Line thin{line.label, line.colour, {}, {}};
+  const auto keep = [&](size_t i) {
+    thin.x.push_back(line.x[i]);
+    thin.y.push_back(line.y[i]);
+  };
   for (size_t b = 0; b < buckets; ++b) {
     const size_t from = b * line.x.size() / buckets, to = (b + 1) * line.x.size() / buckets;
-    const auto [least, largest] = std::minmax_element(line.y.begin() + static_cast<std::ptrdiff_t>(from),
-                                                      line.y.begin() + static_cast<std::ptrdiff_t>(to));
-    const auto ends = std::minmax({least - line.y.begin(), largest - line.y.begin()});
-    for (const auto i : {ends.first, ends.second}) {
-      thin.x.push_back(line.x[static_cast<size_t>(i)]);
-      thin.y.push_back(line.y[static_cast<size_t>(i)]);
+    size_t least = to, largest = to;
+    for (size_t i = from; i < to; ++i) {
+      if (!isDrawn(line.y[i])) continue;
+      if (least == to || line.y[i] < line.y[least]) least = i;
+      if (largest == to || line.y[i] > line.y[largest]) largest = i;
     }
+    if (least == to) {
+      keep(from);
+      continue;
+    }
+    keep(std::min(least, largest));
+    if (least != largest) keep(std::max(least, largest));
   }
   return thin;
 }
@@ -172,19 +195,25 @@ LinePlot inDecades(LinePlot plot) {
   return plot;
 }
 
+/// Pieces between gaps; one that is a single value is a dot.
 std::string path(const Line& line, const Frame& frame) {
   std::string d;
-  bool pen_down = false;
+  size_t in_piece = 0;
+  const auto endPiece = [&] {
+    if (in_piece == 1) d += "h0";
+    in_piece = 0;
+  };
   for (size_t i = 0; i < line.x.size(); ++i) {
     if (!isDrawn(line.y[i]) || !isDrawn(line.x[i])) {
-      pen_down = false;
+      endPiece();
       continue;
     }
-    d += pen_down ? 'L' : 'M';
+    d += in_piece++ > 0 ? 'L' : 'M';
     d += pair(frame.px_x(line.x[i]), frame.px_y(line.y[i]));
-    pen_down = true;
   }
-  return "<path d='" + d + "' fill='none' stroke='" + line.colour + "' stroke-width='1.4' stroke-linejoin='round'/>\n";
+  endPiece();
+  return "<path d='" + d + "' fill='none' stroke='" + line.colour +
+         "' stroke-width='1.4' stroke-linejoin='round' stroke-linecap='round'/>\n";
 }
 
 /// Viridis, by linear interpolation between nine of its colours.
@@ -287,28 +316,38 @@ std::string draw(const LinePlot& given, const Box& box) {
   x.makeDrawable();
   y.makeDrawable();
   y.upper += 0.06 * y.length();
-  if (y.lower < 0) y.lower -= 0.06 * y.length();
-  const Frame frame(box, x, y, plot.log_y);
+  if (y.lower < 0 || (!plot.from_zero && !plot.log_y)) y.lower -= 0.06 * y.length();
 
-  std::string svg = frame.axes(plot.title, plot.x_label, plot.y_label);
-  for (const Line& line : plot.lines) svg += path(thinned(line, static_cast<size_t>(frame.area().width)), frame);
-  // Keys from the right, on the line of the title.
-  double key = box.x + box.width - margin_right;
+  // Keys from the right, on the line of the title and, where they are many, on more lines below it.
+  constexpr double key_height = 18;
+  const double right = box.x + box.width - margin_right;
+  double key = right, key_y = box.y + 20;
+  std::string keys;
   const auto addKey = [&](const std::string& label, const std::string& stroke) {
-    key -= 7.0 * static_cast<double>(label.size()) + 34;
-    svg += "<path d='M" + px(key) + " " + px(box.y + 16) + "h20' fill='none' " + stroke + "/><text x='" + px(key + 25) +
-           "' y='" + px(box.y + 20) + "' fill='#333'>" + escaped(label) + "</text>\n";
+    const double width = 7.0 * static_cast<double>(label.size()) + 34;
+    if (key < right && key - width < box.x + margin_left / 2) {
+      key = right;
+      key_y += key_height;
+    }
+    key -= width;
+    keys += "<path d='M" + px(key) + " " + px(key_y - 4) + "h20' fill='none' " + stroke + "/><text x='" + px(key + 25) +
+            "' y='" + px(key_y) + "' fill='#333'>" + escaped(label) + "</text>\n";
   };
-  if (plot.wanted && isDrawn(*plot.wanted)) {
-    const std::string stroke = "stroke='#444' stroke-width='1.4' stroke-dasharray='6 4'";
-    svg += "<path d='M" + px(frame.area().x) + " " + px(frame.px_y(*plot.wanted)) + "h" + px(frame.area().width) +
-           "' fill='none' " + stroke + "/>\n";
-    addKey(plot.wanted_label, stroke);
-  }
+  const bool wanted = plot.wanted && isDrawn(*plot.wanted);
+  const std::string dashed = "stroke='#444' stroke-width='1.4' stroke-dasharray='6 4'";
+  if (wanted) addKey(plot.wanted_label, dashed);
   for (auto line = plot.lines.rbegin(); line != plot.lines.rend(); ++line) {
     if (!line->label.empty()) addKey(line->label, "stroke='" + line->colour + "' stroke-width='2.5'");
   }
-  return svg;
+
+  const double extra = key_y - box.y - 20;
+  const Frame frame({box.x, box.y + extra, box.width, box.height - extra}, x, y, plot.log_y);
+  std::string svg = frame.axes(plot.title, plot.x_label, plot.y_label);
+  for (const Line& line : plot.lines) svg += path(thinned(line, static_cast<size_t>(frame.area().width)), frame);
+  if (wanted)
+    svg += "<path d='M" + px(frame.area().x) + " " + px(frame.px_y(*plot.wanted)) + "h" + px(frame.area().width) +
+           "' fill='none' " + dashed + "/>\n";
+  return svg + keys;
 }
 
 double heightOf(const GroupPlot& plot) {

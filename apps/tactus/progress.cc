@@ -11,9 +11,10 @@ constexpr std::chrono::milliseconds interval{100};
 
 }  // namespace
 
-Progress::Progress(double duration, std::string label)
+Progress::Progress(double duration, std::string label, double from)
     : terminal_(::isatty(STDERR_FILENO) == 1),
       duration_(duration),
+      from_(from),
       label_(std::move(label)),
       start_(Clock::now()),
       shown_(start_) {}
@@ -29,7 +30,7 @@ void Progress::observe(const control::ObservedTick& tick) {
   shown_ = now;
   const double wall = std::chrono::duration<double>(now - start_).count();
   std::fprintf(stderr, "\r\033[K%s%.1f of %.1f s, %.1f × real time", label_.c_str(), tick.sensed.time, duration_,
-               tick.sensed.time / wall);
+               (tick.sensed.time - from_) / wall);
 }
 
 }  // namespace tactus::app

@@ -11,7 +11,8 @@ namespace tactus::app {
 /// real-time factor.
 class Progress final : public control::Observer {
  public:
-  explicit Progress(double duration, std::string label = "");
+  /// `from`, s, is where the run begins.
+  explicit Progress(double duration, std::string label = "", double from = 0);
   ~Progress() override;
 
   void observe(const control::ObservedTick& tick) override;
@@ -19,7 +20,7 @@ class Progress final : public control::Observer {
  private:
   using Clock = std::chrono::steady_clock;
   bool terminal_;
-  double duration_;                                                ///< s
+  double duration_, from_;                                         ///< s
   std::string label_;
   Clock::time_point start_, shown_;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <map>
 
@@ -22,17 +21,7 @@ using Floats = std::vector<float>;
 static_assert(std::endian::native == std::endian::little, "the page reads little-endian numbers");
 
 std::string base64(const Floats& numbers) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes(numbers.size() * sizeof(float), '\0'), text;
-  if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u; };
-    const unsigned group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    for (size_t k = 0; k < 4; ++k)
-      text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
-  }
-  return text;
+  return app::base64({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)});
 }
 
 size_t charactersOf(size_t numbers) { return numbers * sizeof(float) * 4 / 3; }
@@ -40,10 +29,6 @@ size_t charactersOf(size_t numbers) { return numbers * sizeof(float) * 4 / 3; }
 /// 1 where `numbers` fit into `characters`, else of how many rows one is kept.
 size_t strideFor(size_t numbers, size_t characters) {
   return std::max<size_t>(1, (charactersOf(numbers) + characters - 1) / std::max<size_t>(1, characters));
-}
-
-CsvTable readIfThere(const std::string& path) {
-  return std::filesystem::exists(path) ? CsvTable::read(path) : CsvTable();
 }
 
 std::string everyNth(size_t stride) { return "every " + std::to_string(stride) + (stride == 2 ? "nd" : stride == 3 ? "rd" : "th"); }
@@ -137,8 +122,8 @@ std::string between(const std::string& text, const std::string& start, const std
   return text.substr(start.size(), text.size() - start.size() - end.size());
 }
 
-std::vector<Plot> plotsOf(const ReplaySource& source, const CsvTable& timing) {
-  const CsvTable& log = source.log;
+std::vector<Plot> plotsOf(const RunRecord& run, const CsvTable& timing) {
+  const CsvTable& log = run.log;
   std::vector<Plot> plots;
   const auto oneOf = [](std::map<std::string, std::string> labels) {
     return [labels = std::move(labels)](const std::string& column) {
@@ -147,7 +132,7 @@ std::vector<Plot> plotsOf(const ReplaySource& source, const CsvTable& timing) {
     };
   };
   ordered_json forces{{"title", "Contact forces (N)"}};
-  if (const auto wanted = source.run.at("wanted_force_N").number()) forces["wanted"] = *wanted;
+  if (const auto wanted = run.run().at("wanted_force_N").number()) forces["wanted"] = *wanted;
   plots.push_back(plotOf(log, forces, oneOf({{"contact/mean_N", "desired, mean"},
                                              {"contact/max_N", "desired, largest"},
                                              {"contact/undesired_max_N", "undesired, largest"},
@@ -186,9 +171,9 @@ ordered_json toJson(const Plot& plot, size_t stride) {
   return json;
 }
 
-ordered_json plotsData(const ReplaySource& source, size_t most_characters, ordered_json& notes) {
+ordered_json plotsData(const RunRecord& run, size_t most_characters, ordered_json& notes) {
   constexpr size_t tick_rows = 4000;                               // more than there are pixels
-  const std::vector<Plot> plots = plotsOf(source, readIfThere(source.folder + "/timing.csv"));
+  const std::vector<Plot> plots = plotsOf(run, readIfThere(run.folder + "/timing.csv"));
   ordered_json json = ordered_json::array();
   for (const Plot& plot : plots) {
     const size_t share = most_characters / plots.size();
@@ -227,7 +212,7 @@ void requireNumbers(const JsonPlace& place, size_t count) {
     if (!item.number()) item.refuse("a number");
 }
 
-/// The page trusts it: everything is there, and of its kind.
+/// Readers trust it: everything is there, and of its kind.
 void requireScene(const std::string& path, const ordered_json& scene) {
   const JsonPlace place(path, scene);
   if (place.at("format").text("") != scene_format)
@@ -272,30 +257,34 @@ void noteSimplified(const JsonPlace& scene, ordered_json& notes) {
 
 }  // namespace
 
-ordered_json replayData(const ReplaySource& source, size_t most_characters) {
-  ordered_json data{{"title", source.title},
+ordered_json readScene(const std::string& path) {
+  ordered_json scene = readJson(path);
+  requireScene(path, scene);
+  return scene;
+}
+
+ordered_json replayData(const RunRecord& run, const std::string& title, size_t most_characters) {
+  ordered_json data{{"title", title},
                     {"scene", nullptr}};
   ordered_json notes = ordered_json::array();
-  const std::string scene_path = source.folder + "/scene.json";
+  const std::string scene_path = run.folder + "/scene.json";
   if (std::filesystem::exists(scene_path)) {
-    ordered_json scene = readJson(scene_path);
-    requireScene(scene_path, scene);
+    ordered_json scene = readScene(scene_path);
     noteSimplified({scene_path, scene}, notes);
     data["scene"] = std::move(scene);
   }
   const size_t used = jsonText(data).size();
   const size_t rest = most_characters - std::min(most_characters / 2, used);
-  const CsvTable frames = readIfThere(source.folder + "/replay.csv"),
-                 contacts = readIfThere(source.folder + "/replay_contacts.csv");
+  const CsvTable &frames = run.frames, &contacts = run.contacts;
   if (frames.rows() > 0) frames.numbers("time");                   // says where it is missing
   const size_t stride = strideFor(frames.rows() * frames.columns().size() + 9 * contacts.rows(), rest / 2);
   if (stride > 1)
     notes.push_back("Of the frames of the replay " + everyNth(stride) + " is kept, so that the page stays small.");
   data["frames"] = {{"columns", frames.columns()}, {"data", base64(rowsOf(frames, stride))}};
   data["contacts"] = contactsData(frames, contacts, stride);
-  data["touched"] = touchedData(source.touched, rest / 8, notes);
-  data["features"] = featuresData(source.run);
-  data["plots"] = plotsData(source, rest / 4, notes);
+  data["touched"] = touchedData(run.touched, rest / 8, notes);
+  data["features"] = featuresData(run.run());
+  data["plots"] = plotsData(run, rest / 4, notes);
   data["notes"] = std::move(notes);
   return data;
 }

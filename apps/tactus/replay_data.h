@@ -3,8 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/tactus/json_place.h"
-#include "framework/runtime/csv_table.h"
+#include "apps/tactus/run_record.h"
 
 namespace tactus::app {
 
@@ -21,17 +20,13 @@ inline constexpr size_t most_replay_characters = 16'000'000;
 ///     features: [{name, position?, truth?}]
 ///     plots: [{title, scale?: "log", stepped?, wanted?, series: [{label: "time", data}, {label, data}, …]}]
 ///     notes: what was left out, a sentence each
-struct ReplaySource {
-  std::string folder;
-  std::string title;
-  JsonPlace run;                                                   ///< run.json
-  const runtime::CsvTable& log;
-  const runtime::CsvTable& touched;
-};
-
+///
 /// In at most that many characters: where there are more numbers, every k-th frame and touched point, and of every k
 /// rows of a plot the largest value.  Throws FileError for a file that is malformed.
-nlohmann::ordered_json replayData(const ReplaySource& source, size_t most_characters);
+nlohmann::ordered_json replayData(const RunRecord& run, const std::string& title, size_t most_characters);
+
+/// scene.json, of which everything is there and of its kind; throws FileError, with the place, where it is not.
+nlohmann::ordered_json readScene(const std::string& path);
 
 /// A script element that holds it; nothing in it ends the element.
 std::string replayScript(const nlohmann::ordered_json& data);

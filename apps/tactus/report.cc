@@ -33,39 +33,16 @@ constexpr const char* blue = "#1f6fb4";
 constexpr const char* orange = "#e07b1a";
 constexpr const char* grey = "#9a9a94";
 
-/// What the report is made of.  A run that was cut off may have left no tables.
-struct RunData {
-  std::string folder;
-  std::string file;
-  ordered_json json;
-  bool cut_off = false;
-  CsvTable log;
-  CsvTable touched;
-
+/// What the report is made of.
+struct RunData : RunRecord {
   std::string xray_path;
   ordered_json xray;                                               ///< null where there is none
-
-  JsonPlace run() const { return {file, json}; }
   JsonPlace xrays() const { return {xray_path, xray}; }
 };
 
 RunData readRunFolder(const std::string& folder) {
-  RunData data;
-  data.folder = folder;
-  data.file = folder + "/run.json";
-  data.json = readJson(data.file);
-  if (data.run().at("format").text("") != run_format) {
-    throw runtime::FileError(data.file, std::string("is not of the format ") + run_format);
-  }
-  data.cut_off = data.run().at("status").text() == status_running;
-  const auto read = [&](const std::string& name) {
-    const std::string path = folder + "/" + name;
-    return data.cut_off && !std::filesystem::exists(path) ? CsvTable() : CsvTable::read(path);
-  };
-  data.log = read("log.csv");
-  data.touched = read("touched_points.csv");
-  data.xray_path = folder + "/" + xray_file;
-  if (std::filesystem::exists(data.xray_path)) data.xray = readJson(data.xray_path);
+  RunData data{readRunRecord(folder), folder + "/" + xray_file, {}};
+  if (fs::exists(data.xray_path)) data.xray = readJson(data.xray_path);
   return data;
 }
 
@@ -207,6 +184,7 @@ std::string warnings(const RunData& data) {
   if (data.cut_off) add("This run was cut off, or is still going: what it had written is shown.");
   if (data.run().at("message").exists()) add(data.run().at("message").text());
   for (const JsonPlace& warning : data.run().at("warnings").items()) add(warning.text());
+  for (const std::string& warning : data.warnings) add(warning + ".");
   return html.empty() ? "" : "<section>" + html + "</section>\n";
 }
 
@@ -248,8 +226,7 @@ std::string nameOf(const std::string& folder) {
 std::string replay(const std::vector<const RunData*>& runs) {
   std::string html = "<section id='replay'><noscript>The replay needs JavaScript.</noscript></section>\n";
   for (const RunData* data : runs)
-    html += replayScript(replayData({data->folder, nameOf(data->folder), data->run(), data->log, data->touched},
-                                    most_replay_characters / runs.size()));
+    html += replayScript(replayData(*data, nameOf(data->folder), most_replay_characters / runs.size()));
   return html;
 }
 
@@ -317,6 +294,7 @@ void writePictures(const ReportArguments& arguments, const std::string& page) {
 
 void writeReport(const std::string& folder) {
   const RunData data = readRunFolder(folder);
+  for (const std::string& warning : data.warnings) std::cerr << "warning: " << warning << "\n";
   const std::string contacts = drawContacts(data);
   const std::string touched = drawTouchedPoints(data);
   runtime::writeFile(folder + "/contacts.svg", contacts);

@@ -1,9 +1,11 @@
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include "apps/tactus/capsule_keeper.h"
 #include "apps/tactus/interrupt.h"
+#include "apps/tactus/live_view.h"
 #include "apps/tactus/progress.h"
 #include "apps/tactus/report.h"
 #include "apps/tactus/run_folder.h"
@@ -24,6 +26,7 @@ struct RunArguments : StackArguments {
   std::string out;
   std::string from;                                                ///< state file; "" = the stack's start
   std::string save_at;                                             ///< s, separated by commas
+  bool live = false;
 };
 
 /// Watches a run for what its folder tells beyond the log.
@@ -105,8 +108,15 @@ int exitCodeOf(const Session& session, runtime::Ending ending) {
   return exit_numerical;
 }
 
+/// What tells on stderr how far the run is.
+std::unique_ptr<control::Observer> progressOf(const Session& session, bool live) {
+  const double from = session.time(), duration = session.stack().run.duration;
+  if (live) return std::make_unique<LiveView>(session.stack().robot, session.contacts(), from, duration);
+  return std::make_unique<Progress>(duration, "", from);
+}
+
 /// Runs the session into the folder.  A file that cannot be written ends the run; what was written stays.
-runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers& keepers,
+runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers& keepers, bool live,
                             const std::atomic<bool>& stop) {
   runtime::LoopResult result;
   try {
@@ -116,9 +126,9 @@ runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers
     runtime::ReplayRecorder replay(folder, session.stack().robot, session.scene(), session.tick());
     const std::vector<control::Observer*> own = session.startRecorders(folder);
     {
-      Progress progress(session.stack().run.duration);
+      const std::unique_ptr<control::Observer> progress = progressOf(session, live);
       std::vector<control::Observer*> observers{&keepers.states,   recorder.get(), &replay,
-                                                &keepers.capsules, &keepers.xrays, &progress};
+                                                &keepers.capsules, &keepers.xrays, progress.get()};
       observers.insert(observers.end(), own.begin(), own.end());
       result = session.run(observers, stop);
     }
@@ -165,7 +175,7 @@ int run(const RunArguments& arguments, bool json) {
   const Interrupt interrupt;
   Keepers keepers(session, folder, save_at);
   const CapsuleKeeper& capsules = keepers.capsules;
-  const runtime::LoopResult result = runInto(folder, session, keepers, interrupt.stop());
+  const runtime::LoopResult result = runInto(folder, session, keepers, arguments.live, interrupt.stop());
   nlohmann::ordered_json description = describeRun(session, result);
   for (const std::string& warning : capsules.warnings()) description["warnings"].push_back(warning);
   description["capsules"] = capsules.files();
@@ -216,6 +226,7 @@ void addRun(CLI::App& program, Context& context) {
   command->add_option("--from", arguments->from, "Go on from a saved state, to the bit; with --set and --backend: branch")
       ->type_name("STATE")
       ->check(notEmpty());
+  command->add_flag("--live", arguments->live, "Show contacts and forces on stderr as the run goes");
   command->add_flag("--json", context.json, "Print run.json on stdout instead of the summary");
   command->footer(
       R"(Leaves run.json, log.csv, timing.csv, touched_points.csv, stack.resolved.xml, xray.json, what a replay needs
@@ -224,6 +235,7 @@ solves again to the bit.  A run that is interrupted leaves its state too, and `-
 
 Examples:
   tactus run examples/explore_table/stack.xml
+  tactus run examples/explore_table/stack.xml --live
   tactus run examples/explore_table/stack.xml --backend qp/nlopt --seed 3 --duration 10
   tactus run examples/explore_table/stack.xml --set press=0.8 --out runs/harder
   tactus run examples/explore_table/stack.xml --save-at 5 --out runs/whole

@@ -2,23 +2,15 @@
 
 #include <unistd.h>
 
-#include <cmath>
 #include <cstdio>
+
+#include "apps/tactus/text.h"
 
 namespace tactus::app {
 namespace {
 
 constexpr std::chrono::milliseconds on_terminal{200};
 constexpr std::chrono::seconds in_log{30};
-
-/// "0:07", "2:05", "1:02:05"
-std::string clockText(double seconds) {
-  const long all = std::lround(seconds);
-  const auto two = [](long number) { return (number < 10 ? "0" : "") + std::to_string(number); };
-  const std::string minutes =
-      all < 3600 ? std::to_string(all / 60) : std::to_string(all / 3600) + ":" + two(all / 60 % 60);
-  return minutes + ":" + two(all % 60);
-}
 
 }  // namespace
 

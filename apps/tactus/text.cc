@@ -11,12 +11,6 @@
 namespace tactus::app {
 namespace {
 
-/// Characters of UTF-8 text.
-size_t width(std::string_view text) {
-  return static_cast<size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
-
 double parseNumber(const std::string& word, const std::string& what) {
   double value = 0;
   const char* end = word.data() + word.size();
@@ -89,7 +83,33 @@ std::string textTable(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+std::string clockText(double seconds) {
+  const long all = std::lround(std::min(seconds, 1e15));
+  const auto two = [](long number) { return (number < 10 ? "0" : "") + std::to_string(number); };
+  const std::string minutes =
+      all < 3600 ? std::to_string(all / 60) : std::to_string(all / 3600) + ":" + two(all / 60 % 60);
+  return minutes + ":" + two(all % 60);
+}
+
+size_t width(std::string_view text) {
+  return static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
 std::string timeText(double seconds) { return control::formatNumber(std::round(seconds * 1e9) / 1e9); }
+
+std::string base64(std::string_view bytes) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u; };
+    const unsigned group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    for (size_t k = 0; k < 4; ++k)
+      text += i + k > bytes.size() ? '=' : digits[group >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
 
 std::string jsonText(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -25,8 +25,17 @@ std::string rounded(double value, int digits = 4);
 /// A simulated time to the nanosecond, without the rounding of sums: "0.35".
 std::string timeText(double seconds);
 
+/// Of a duration: "0:07", "2:05", "1:02:05".
+std::string clockText(double seconds);
+
+/// Characters of UTF-8 text.
+size_t width(std::string_view text);
+
 /// A table with aligned columns: the first to the left, all others to the right; the first row is the head.
 std::string textTable(const std::vector<std::vector<std::string>>& rows);
+
+/// RFC 4648, with its padding.
+std::string base64(std::string_view bytes);
 
 /// The document, whatever bytes its texts hold: what is not UTF-8 becomes U+FFFD.  Without indent in one line.
 std::string jsonText(const nlohmann::ordered_json& json, int indent = -1);

@@ -63,6 +63,7 @@ class ContactMetrics final : public control::Observer {
   void update(const std::vector<control::ContactRecord>& records, double dt);
 
   const Now& now() const { return now_; }
+  bool isDesired(int link) const { return desired_.at(static_cast<size_t>(link)); }
   bool touched() const { return ticks_ > 0; }
   bool touchesItself() const { return touches_itself_; }
   std::vector<control::Metric> metrics() const;

@@ -36,6 +36,7 @@ CsvTable CsvTable::read(const std::string& path) {
                                 " cells, but there are " + std::to_string(table.columns_.size()) + " columns");
     }
   }
+  table.ends_within_line_ = !rest.empty();
   if (table.columns_.empty()) throw FileError(path, "is empty; expected a line of column names");
   return table;
 }

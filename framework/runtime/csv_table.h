@@ -14,6 +14,7 @@ class CsvTable {
   static CsvTable read(const std::string& path);
 
   const std::string& path() const { return path_; }
+  bool endsWithinLine() const { return ends_within_line_; }        ///< a line was left out
   const std::vector<std::string>& columns() const { return columns_; }
   size_t rows() const { return cells_.size(); }
   int column(std::string_view name) const;                         ///< -1 when there is none
@@ -25,6 +26,7 @@ class CsvTable {
 
  private:
   std::string path_;
+  bool ends_within_line_ = false;
   std::vector<std::string> columns_;
   std::vector<std::vector<std::string>> cells_;
 };

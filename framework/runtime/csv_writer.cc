@@ -46,8 +46,8 @@ void CsvWriter::separate() {
 
 CsvWriter& CsvWriter::operator<<(double value) {
   separate();
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  char digits[400];                                                // of 5e-324 there are 326
+  const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr;
   buffer_.append(digits, end);
   return *this;
 }
@@ -61,7 +61,13 @@ CsvWriter& CsvWriter::operator<<(std::string_view text) {
 void CsvWriter::endRow() {
   buffer_ += '\n';
   row_begun_ = false;
-  if (buffer_.size() >= buffer_size || std::chrono::steady_clock::now() - last_flush_ >= flush_interval) flush();
+  if (buffer_.size() >= buffer_size || isDue()) flush();
+}
+
+bool CsvWriter::isDue() const { return std::chrono::steady_clock::now() - last_flush_ >= flush_interval; }
+
+void CsvWriter::flushWhenDue() {
+  if (!row_begun_ && !buffer_.empty() && isDue()) flush();
 }
 
 void CsvWriter::flush() {

@@ -34,6 +34,8 @@ void Recorder::observe(const control::ObservedTick& tick) {
   timing_ << tick.sensed.time << tick.tick_us;
   timing_.endRow();
   if (options_.touched_points) recordTouchedPoints(tick.controller.model());
+  log_->flushWhenDue();
+  touched_.flushWhenDue();
 }
 
 void Recorder::recordTouchedPoints(const dynamics::Model& model) {

@@ -25,6 +25,7 @@ struct RecorderOptions {
 ///   log.csv             LogColumns, one row every 1/row_rate seconds
 ///   timing.csv          time, tick_us: wall-clock time of every tick
 ///   touched_points.csv  time, link, x, y, z (m), normal_x, normal_y, normal_z (out of the robot), force_N
+/// What is older than a second of the wall clock is in the files at every tick.
 /// Throws FileError when a file cannot be written.
 class Recorder final : public control::Observer {
  public:

@@ -66,7 +66,12 @@ void ReplayRecorder::start(const control::Controller& controller) {
 
 void ReplayRecorder::observe(const control::ObservedTick& tick) {
   if (!frames_) start(tick.controller);
-  if (ticks_++ % ticks_per_frame_ != 0) return;
+  if (ticks_++ % ticks_per_frame_ == 0) record(tick);
+  frames_->flushWhenDue();
+  contacts_.flushWhenDue();
+}
+
+void ReplayRecorder::record(const control::ObservedTick& tick) {
   const dynamics::Model& model = tick.controller.model();
   dynamics::forwardKinematics(model, tick.truth.q, *workspace_);
   *frames_ << tick.truth.time;

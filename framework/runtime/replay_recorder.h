@@ -19,6 +19,7 @@ namespace tactus::runtime {
 ///   replay_contacts.csv  time, link, on, x, y, z, force_x, force_y, force_z: every touch of that frame, on an object or
 ///                        another link; the force is what the link does, friction included
 /// Lengths in m to 10 µm, quaternions with w ≥ 0 to 1e-5, forces in N to 0.1 mN.  Repeats to the byte.
+/// What is older than a second of the wall clock is in the files at every tick.
 /// Throws FileError when a file cannot be written.
 class ReplayRecorder final : public control::Observer {
  public:
@@ -34,6 +35,7 @@ class ReplayRecorder final : public control::Observer {
 
  private:
   void start(const control::Controller& controller);
+  void record(const control::ObservedTick& tick);
   void recordContacts(const control::Sensed& truth);
 
   std::string folder_;

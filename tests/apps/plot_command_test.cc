@@ -11,6 +11,7 @@ namespace tactus::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 struct Logged {
@@ -32,6 +33,33 @@ TEST(PlotCommand, DrawsAPanelForEachArgument) {
   for (const char* text : {">q/hip<", ">q/knee<", ">contact/mean_N<", " 1100 520'", "#0072b2", "#e69f00"})
     EXPECT_THAT(svg, HasSubstr(text));
   EXPECT_NE(one.out, tactus({"plot", logged.run + "/log.csv", "q/hip"}).out);
+}
+
+TEST(PlotCommand, ListsColumnsWhereNoneIsNamed) {
+  const Logged logged;
+  const Outcome outcome = tactus({"plot", logged.run});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("time\nlevel/1/rank\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("\nq/hip\n"));
+  EXPECT_EQ(tactus({"plot", logged.run, "--out", logged.folder.file("a.svg")}).exit_code, 2);
+}
+
+TEST(PlotCommand, UnitsThatNamesTell) {
+  const Logged logged;
+  const std::string svg = tactus({"plot", logged.run, "contact/mean_N,contact/max_N", "q/hip", "qd/hip,tau/hip"}).out;
+  EXPECT_THAT(svg, HasSubstr(">N</text>"));
+  EXPECT_THAT(svg, HasSubstr(">rad</text>"));
+  EXPECT_THAT(svg, HasSubstr(">time (s)</text>"));
+  EXPECT_THAT(svg, Not(HasSubstr(">rad/s</text>"))) << "two units have no common name";
+}
+
+TEST(PlotCommand, OfWhatACutOffRunLeft) {
+  const Logged logged;
+  const std::string log = logged.folder.write("a.csv", "time,x\n0,1\n1,nan\n2,3\n3,");
+  const Outcome outcome = tactus({"plot", log, "x"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("a.csv ends within a line, which is left out"));
+  EXPECT_THAT(tactus({"plot", logged.folder.write("b.csv", "time,x\n"), "x"}).out, HasSubstr("has no rows"));
 }
 
 TEST(PlotCommand, RefusesWhatItCannotDraw) {

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tactus::app {
 namespace {
@@ -49,6 +51,52 @@ TEST(Plot, APeakOfOneSampleIsNotThinnedAway) {
   EXPECT_LT(svg.size(), 40000u);
   // 10 is 1/1.06 of the axis: 34 px of margin, 222 px of axis.
   EXPECT_THAT(svg, HasSubstr(" 46.6"));
+}
+
+/// How many pieces the only line has, and how many of them are dots.
+std::pair<size_t, size_t> piecesOf(const std::vector<double>& y) {
+  std::vector<double> x(y.size());
+  for (size_t i = 0; i < x.size(); ++i) x[i] = static_cast<double>(i);
+  const std::string svg = draw(LinePlot{"t", "x", "y", {{"", "blue", x, y}}, {}, "", false}, box);
+  expectWellFormed(svgDocument(600, 300, svg));
+  const size_t from = svg.rfind("<path d='", svg.find("stroke='blue'"));
+  const std::string d = svg.substr(from + 9, svg.find('\'', from + 9) - from - 9);
+  size_t dots = 0;
+  for (size_t at = 0; (at = d.find("h0", at)) != std::string::npos; ++at) ++dots;
+  return {static_cast<size_t>(std::count(d.begin(), d.end(), 'M')), dots};
+}
+
+TEST(Plot, WhatIsNoNumberIsAGapAndAValueAloneADot) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(piecesOf({1, 2, nan, 3, 2, INFINITY, 4}), (std::pair<size_t, size_t>{3, 1}));
+  EXPECT_EQ(piecesOf({nan, nan}), (std::pair<size_t, size_t>{0, 0}));
+  // Thinned, too: a gap of a tenth of the axis stays, and single samples without a number take no peak away.
+  std::vector<double> many(100000, 1.0);
+  std::fill(many.begin() + 40000, many.begin() + 50000, nan);
+  for (size_t i = 0; i < many.size(); i += 3) many[i] = nan;
+  many[70000] = 10;
+  EXPECT_EQ(piecesOf(many), (std::pair<size_t, size_t>{2, 0}));
+}
+
+TEST(Plot, AConstantHasARangeOfItsOwnSize) {
+  for (const auto& [value, label] : {std::pair{1e-6, ">1e-06<"}, {4e6, ">4e+06<"}, {0.0, ">0.0<"}, {-3.0, ">-3<"}}) {
+    const std::string svg =
+        draw(LinePlot{"t", "x", "y", {{"", "blue", {0, 1, 2}, {value, value, value}}}, {}, "", false}, box);
+    expectWellFormed(svgDocument(600, 300, svg));
+    EXPECT_THAT(svg, HasSubstr(label));
+  }
+}
+
+TEST(Plot, KeysThatFillALineGoOnInTheNext) {
+  LinePlot plot{"", "x", "y", {}, {}, "", false};
+  for (int i = 0; i < 9; ++i)
+    plot.lines.push_back({"a/name/of/some/length/" + std::to_string(i), "blue", {0, 1}, {0, 1}});
+  const std::string svg = draw(plot, box);
+  expectWellFormed(svgDocument(600, 300, svg));
+  for (size_t at = 0; (at = svg.find("h20'", at)) != std::string::npos; ++at) {
+    const size_t from = svg.rfind("<path d='M", at) + 10;
+    EXPECT_GE(std::stod(svg.substr(from)), 0) << "a key left of the picture";
+  }
 }
 
 TEST(Plot, NothingOneValueAndNotANumberCanBeDrawn) {

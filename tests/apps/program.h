@@ -45,6 +45,35 @@ class RunningProgram {
   pid_t process_ = -1;
 };
 
+/// A `tactus` whose input and output are a terminal of 80 columns and 24 lines, with the terminal's ordinary settings.
+class ProgramInTerminal {
+ public:
+  explicit ProgramInTerminal(const std::vector<std::string>& arguments);
+  ~ProgramInTerminal();
+  ProgramInTerminal(const ProgramInTerminal&) = delete;
+  ProgramInTerminal& operator=(const ProgramInTerminal&) = delete;
+
+  /// What it has written by now is added to output(), after waiting for at most that long; false at its end.
+  bool read(int milliseconds);
+  const std::string& output() const { return output_; }
+  void type(const std::string& keys);
+  void send(int signal);
+  /// Reads on to its end; returns the exit code as Outcome has it.
+  int wait();
+  /// Whether the settings are those of the start; before wait().
+  bool settingsAreOrdinary() const;
+
+ private:
+  int terminal_ = -1;
+  pid_t process_ = -1;
+  std::string output_, settings_;
+};
+
+/// What a terminal of that width shows of a program's output, line by line from the first to the last that it wrote in;
+/// what scrolls away is kept.  Understands line ends, ESC[nA, ESC[K and ESC[J, and fails the test for any other escape
+/// sequence and for a line that wraps.
+std::vector<std::string> screenOf(const std::string& output, size_t width = 80);
+
 /// A file of tests/apps/data.
 std::string data(const std::string& name);
 

@@ -47,12 +47,13 @@ class ReplayDataTest : public ::testing::Test {
       log += time + (i == frames / 3 + 1 ? ",9\n" : ",1\n");
       contacts += time + ",tip," + (i % 2 ? "cup" : "table") + ",1,2,3,0,0," + time + "\n";
     }
-    folder.write("replay.csv", replay);
-    folder.write("replay_contacts.csv", contacts);
-    const std::string log_file = folder.write("log.csv", log);
-    const ordered_json run{{"stack", "s"}, {"backend", "b"}};
-    return replayData({folder.path(), "a run", {"run.json", run}, runtime::CsvTable::read(log_file), {}},
-                      most_characters);
+    RunRecord run;
+    run.folder = folder.path();
+    run.json = {{"stack", "s"}, {"backend", "b"}};
+    run.frames = runtime::CsvTable::read(folder.write("replay.csv", replay));
+    run.contacts = runtime::CsvTable::read(folder.write("replay_contacts.csv", contacts));
+    run.log = runtime::CsvTable::read(folder.write("log.csv", log));
+    return replayData(run, "a run", most_characters);
   }
   TemporaryFolder folder;
 };

@@ -285,6 +285,27 @@ test('two runs side by side on one clock, with cameras that go together', async 
   assert.equal(await page.evaluate('tactus.views[1].camera.position.x === tactus.views[0].camera.position.x'), true);
 });
 
+test('points touched on an object that moves go with it', async () => {
+  say('run', join(source, 'examples/hold_a_can/stack.xml'), '--out', join(folder, 'can'), '--duration', '2');
+  const page = await browser.open(pathToFileURL(join(folder, 'can/report.html')).href);
+  assert.deepEqual(page.complaints, []);
+  const radius = 0.03;
+  const [count, far] = await page.evaluate(`(() => { const {points} = tactus.views[0].clouds[1];
+    const p = points.geometry.attributes.position;
+    let far = 0;
+    for (let i = 0; i < p.count; ++i) far += Math.abs(Math.hypot(p.getX(i), p.getY(i)) - ${radius}) > 0.006;
+    return [p.count, far]; })()`);
+  assert.ok(count > 30, `${count} points on the can`);
+  assert.ok(far < 0.02 * count, `${far} of ${count} are off its wall`);
+  const shown = async (time) => {
+    await page.evaluate(`tactus.clock.seek(${time})`);
+    return page.evaluate('tactus.views[0].clouds[1].points.geometry.drawRange.count');
+  };
+  assert.equal(await shown(0), 0);
+  assert.equal(await shown(2), count);
+  assert.equal(await page.evaluate('tactus.views[0].touched.geometry.attributes.position.count'), 0);
+});
+
 test('pictures for papers', () => {
   const pictures = join(folder, 'pictures');
   say('report', run, '--png', pictures, '--at', '12');

@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using runtime::CsvTable;
 using ::testing::AllOf;
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -315,7 +314,8 @@ TEST(ReportCommand, MakesTheSameReportAgain) {
   EXPECT_THAT(report, HasSubstr("Links in contact"));
   EXPECT_THAT(report, HasSubstr("Touched points from above"));
   EXPECT_THAT(report, HasSubstr("Error of task bow"));
-  EXPECT_THAT(report, Not(ContainsRegex("<[a-z]+ [^<>]*(src|href)=['\"][^#d]"))) << "the report stands alone";
+  for (const char* elsewhere : {"<script src", "<link", "<img", "<iframe", "@import"})
+    EXPECT_THAT(report, Not(HasSubstr(elsewhere))) << "the report stands alone";
   EXPECT_LT(report.size(), 3'000'000u);
   fs::remove(folder.file("run/report.html"));
   EXPECT_EQ(tactus({"report", folder.file("run")}).exit_code, 0);

@@ -44,6 +44,8 @@ TEST(CsvTable, BrokenLastLineIsLeftOut) {
   const TemporaryFolder folder;
   const CsvTable table = CsvTable::read(folder.write("a.csv", "x,y\n1,2\n3,"));
   EXPECT_EQ(table.rows(), 1u);
+  EXPECT_TRUE(table.endsWithinLine());
+  EXPECT_FALSE(CsvTable::read(folder.write("a.csv", "x,y\n1,2\n")).endsWithinLine());
 }
 
 TEST(CsvTable, SaysWhatIsWrongAndWhere) {

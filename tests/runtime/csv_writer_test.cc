@@ -26,7 +26,7 @@ TEST(CsvWriter, WritesTheseBytes) {
   CsvWriter writer(folder.file("a.csv"), {"time", "task/reach/error", "link"});
   writer << 0.0 << 0.1 << std::string_view("palm");
   writer.endRow();
-  writer << 1.0 << -1e-300 << std::string_view("thumb");
+  writer << 1.0 << -1.5e-7 << std::string_view("thumb");
   writer.endRow();
   writer << 1e22 << 1.0 / 3 << std::string_view("");
   writer.endRow();
@@ -34,7 +34,8 @@ TEST(CsvWriter, WritesTheseBytes) {
   writer.endRow();
   writer.close();
   EXPECT_EQ(contentOf(folder.file("a.csv")),
-            "time,task/reach/error,link\n0,0.1,palm\n1,-1e-300,thumb\n1e+22,0.3333333333333333,\nnan,inf,-0\n");
+            "time,task/reach/error,link\n0,0.1,palm\n1,-0.00000015,thumb\n10000000000000000000000,0.3333333333333333,\n"
+            "nan,inf,-0\n");
 }
 
 TEST(CsvWriter, NumbersReadBackToTheSameBits) {
@@ -67,6 +68,25 @@ TEST(CsvWriter, OldRowsAreOnDiskAfterASecond) {
   writer << 2.0;
   writer.endRow();
   EXPECT_EQ(contentOf(folder.file("a.csv")), "x\n1\n2\n");
+}
+
+TEST(CsvWriter, SeldomRowsAreOnDiskAfterASecondToo) {
+  const TemporaryFolder folder;
+  CsvWriter writer(folder.file("a.csv"), {"x", "y"});
+  writer << 1.0 << 2.0;
+  writer.endRow();
+  writer.flushWhenDue();
+  EXPECT_EQ(contentOf(folder.file("a.csv")), "x,y\n");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+  writer.flushWhenDue();
+  EXPECT_EQ(contentOf(folder.file("a.csv")), "x,y\n1,2\n");
+  writer << 3.0;
+  std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+  writer.flushWhenDue();
+  EXPECT_EQ(contentOf(folder.file("a.csv")), "x,y\n1,2\n") << "half a row is none";
+  writer << 4.0;
+  writer.endRow();
+  EXPECT_EQ(contentOf(folder.file("a.csv")), "x,y\n1,2\n3,4\n");
 }
 
 TEST(CsvWriter, HeaderIsOnDiskAtOnce) {

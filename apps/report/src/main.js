@@ -134,11 +134,11 @@ function applyAddress({clock, views}) {
   const wanted = new URLSearchParams(location.hash.slice(1));
   if (wanted.has('figure')) document.body.dataset.figure = wanted.get('figure');
   window.dispatchEvent(new Event('resize'));
+  const at = Number(wanted.get('at'));
+  clock.seek(wanted.has('at') && Number.isFinite(at) ? at : clock.start);
   if (wanted.has('camera') && wanted.get('camera') in cameras) {
     for (const view of views) view.setCamera(wanted.get('camera'));
   }
-  const at = Number(wanted.get('at'));
-  clock.seek(wanted.has('at') && Number.isFinite(at) ? at : clock.start);
 }
 
 const host = document.querySelector('#replay');

@@ -5,11 +5,12 @@ import {indexAt} from './run_data.js';
 
 const ink = '#444';
 const rule = '#e8e8e3';
+const whole = [1, 10, 100, 1000, 10000].flatMap((power) => [power, 2 * power, 5 * power]); // steps of what is counted
 
 function text(value) {
   if (value == null || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(1).replace('.0e', 'e');
+  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(1).replace('.0e', 'e').replace('e+', 'e');
   return String(Number(value.toPrecision(3)));
 }
 
@@ -35,7 +36,7 @@ function rangeOf(plots) {
     return [10 ** Math.floor(Math.log10(Math.max(low, high * 1e-7))), 10 ** Math.ceil(Math.log10(high) + 1e-9)];
   }
   const bottom = Math.min(0, low);
-  const top = Math.max(high, plots[0].wanted || 0);
+  const top = Math.max(high, plots[0].wanted || 0, plots[0].stepped ? 1 : 0);
   return [bottom, top + 0.06 * (top - bottom || 1)];
 }
 
@@ -85,6 +86,7 @@ export class Plots {
         y: {distr: plot.scale === 'log' ? 3 : 1, range: () => range}},
       axes: [{...axis, size: 22, gap: 2}, {...axis, size: 46, gap: 3, space: 22,
         ...(plot.scale === 'log' ? {filter: decades, grid: {...axis.grid, filter: decades}, ticks: {...axis.ticks, filter: decades}} : {}),
+        ...(plot.stepped ? {incrs: whole} : {}),
         values: (_, splits) => splits.map((value) => (value == null ? '' : text(value)))}],
       series: [{}, ...series],
       padding: [6, 8, 0, 0],

@@ -82,16 +82,21 @@ export class RunData {
     return found;
   }
 
-  /** How many points had been touched by a time. */
-  touchedBy(time) {
-    let low = 0;
-    let high = this.touched.length / 5;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.touched[5 * middle] <= time) low = middle + 1;
-      else high = middle;
-    }
-    return low;
+  /** What each touched point lies on: of the touches around its time, that nearest to it; '' where there is none. */
+  touchedOn() {
+    const around = 3; // frames: a short touch may fall between two
+    return Array.from({length: this.touched.length / 5}, (_, i) => {
+      const [time, x, y, z] = this.touched.subarray(5 * i, 5 * i + 4);
+      const frame = this.count ? this.frameAt(time)[0] : 0;
+      const last = Math.min(this.count, frame + 1 + around);
+      let [nearest, on] = [Infinity, ''];
+      for (let row = this.firstContact[Math.max(0, frame - around)]; row < this.firstContact[last]; ++row) {
+        const at = 9 * row;
+        const distance = Math.hypot(this.contacts[at + 3] - x, this.contacts[at + 4] - y, this.contacts[at + 5] - z);
+        if (distance < nearest) [nearest, on] = [distance, this.partners[this.contacts[at + 2]]];
+      }
+      return on;
+    });
   }
 
   /** The force (N) that nine of ten contacts of the run stay below. */

@@ -3,6 +3,7 @@ import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {toCreasedNormals} from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 
 import * as palette from './palette.js';
+import {indexAt} from './run_data.js';
 
 /** From where the camera looks, in the world's axes (z up). */
 export const cameras = {
@@ -77,6 +78,7 @@ export class View {
     this.host = host;
     this.run = run;
     this.forceScale = forceScale;
+    this.time = 0;
     this.shown = {forces: true, points: true, references: true};
     this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(window.devicePixelRatio);
@@ -145,25 +147,53 @@ export class View {
     group.add(mesh, edges);
     setPose(group, object.pose);
     this.things.add(group);
-    this.objects.set(object.name, {group, column: this.run.column('object/' + object.name)});
+    this.objects.set(object.name, {group, rest: object.pose, column: this.run.column('object/' + object.name)});
   }
 
+  /** Points on an object that moves go with it; all others stay where they were. */
   #addTouched() {
-    const count = this.run.touched.length / 5;
-    const positions = new Float32Array(3 * count);
-    const colours = new Float32Array(3 * count);
-    for (let i = 0; i < count; ++i) {
-      positions.set(this.run.touched.subarray(5 * i + 1, 5 * i + 4), 3 * i);
-      colours.set(new THREE.Color().setRGB(...palette.viridisAt(this.run.touched[5 * i + 4]), THREE.SRGBColorSpace)
-        .toArray(), 3 * i);
+    const {touched} = this.run;
+    const material = new THREE.PointsMaterial({size: 4 * window.devicePixelRatio, sizeAttenuation: false,
+      vertexColors: true, map: roundSprite(), alphaTest: 0.5});
+    const clouds = new Map([['', {host: this.world, times: [], positions: [], colours: []}]]);
+    for (const [name, part] of this.objects) {
+      if (part.column >= 0) clouds.set(name, {host: part.group, part, times: [], positions: [], colours: []});
     }
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-    geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
-    this.touched = new THREE.Points(geometry, new THREE.PointsMaterial({size: 4 * window.devicePixelRatio,
-      sizeAttenuation: false, vertexColors: true, map: roundSprite(), alphaTest: 0.5}));
-    this.touched.frustumCulled = false;
-    this.world.add(this.touched);
+    this.run.touchedOn().forEach((on, i) => {
+      const [time, x, y, z, height] = touched.subarray(5 * i, 5 * i + 5);
+      const {part, times, positions, colours} = clouds.get(on) ?? clouds.get('');
+      const point = new THREE.Vector3(x, y, z);
+      if (part) {
+        this.#moveTo(part, time);
+        point.sub(part.group.position).applyQuaternion(part.group.quaternion.clone().invert());
+      }
+      times.push(time);
+      positions.push(...point.toArray());
+      colours.push(...new THREE.Color().setRGB(...palette.viridisAt(height), THREE.SRGBColorSpace).toArray());
+    });
+    this.clouds = [...clouds.values()].map(({host, times, positions, colours}) => {
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.Float32BufferAttribute(positions, 3));
+      geometry.setAttribute('color', new THREE.Float32BufferAttribute(colours, 3));
+      const points = new THREE.Points(geometry, material);
+      points.frustumCulled = false;
+      host.add(points);
+      return {points, times};
+    });
+    this.touched = this.clouds[0].points;
+    for (const part of this.objects.values()) if (part.column >= 0) setPose(part.group, part.rest);
+  }
+
+  /** Where something that moves is at a time, between two frames. */
+  #moveTo({group, column}, time) {
+    const {run} = this;
+    const [frame, next, share] = run.frameAt(time);
+    setPose(group, run.frames, frame * run.width + column);
+    if (share === 0) return;
+    const at = next * run.width + column;
+    group.position.lerp(new THREE.Vector3(...run.frames.subarray(at, at + 3)), share);
+    const [w, x, y, z] = run.frames.subarray(at + 3, at + 7);
+    group.quaternion.slerp(new THREE.Quaternion(x, y, z, w), share);
   }
 
   /** What tasks steer for, and features where they are and where they were found. */
@@ -193,7 +223,7 @@ export class View {
     }
   }
 
-  /** What the cameras aim at: the robot with all objects, and the hand where it touched. */
+  /** What the cameras aim at: the robot with all objects, and where the run touched. */
   #measure() {
     const whole = new THREE.Box3().setFromObject(this.robot);
     for (const {group} of this.objects.values()) {
@@ -201,14 +231,25 @@ export class View {
       const size = box.getSize(new THREE.Vector3());
       if (Math.max(size.x, size.y, size.z) < 2.5) whole.union(box);
     }
-    const hand = new THREE.Box3();
-    for (let row = 0; row < this.run.contacts.length; row += 9) {
-      hand.expandByPoint(new THREE.Vector3(...this.run.contacts.subarray(row + 3, row + 6)));
-    }
-    if (hand.isEmpty()) hand.copy(whole);
-    else hand.expandByScalar(0.03);
     if (whole.isEmpty()) whole.set(new THREE.Vector3(-0.5, -0.5, 0), new THREE.Vector3(0.5, 0.5, 1));
-    this.boxes = {whole, hand: hand.isEmpty() ? whole : hand};
+    this.boxes = {whole, touched: this.#touchedBox(0, this.run.count)};
+  }
+
+  /** Around all touches of these frames; empty where there are none. */
+  #touchedBox(from, to) {
+    const box = new THREE.Box3();
+    for (let row = this.run.firstContact[from]; row < this.run.firstContact[to]; ++row) {
+      box.expandByPoint(new THREE.Vector3(...this.run.contacts.subarray(9 * row + 3, 9 * row + 6)));
+    }
+    return box.isEmpty() ? box : box.expandByScalar(0.05);
+  }
+
+  /** Where the hand touches about now, or where the run touched at all. */
+  #handBox() {
+    if (!this.run.count) return this.boxes.whole;
+    const [frame] = this.run.frameAt(this.time);
+    const now = this.#touchedBox(Math.max(0, frame - 5), Math.min(this.run.count, frame + 6));
+    return [now, this.boxes.touched, this.boxes.whole].find((box) => !box.isEmpty());
   }
 
   #addGround() {
@@ -240,7 +281,7 @@ export class View {
   }
 
   setCamera(name) {
-    const box = name === 'hand' ? this.boxes.hand : this.boxes.whole;
+    const box = name === 'hand' ? this.#handBox() : this.boxes.whole;
     const target = box.getCenter(new THREE.Vector3());
     const radius = box.getSize(new THREE.Vector3()).length() / 2;
     const narrow = Math.min(1, this.camera.aspect);
@@ -260,19 +301,16 @@ export class View {
 
   show(time) {
     const {run} = this;
+    this.time = time;
     if (!run.count) return this.draw();
-    const [frame, next, share] = run.frameAt(time);
+    const [frame] = run.frameAt(time);
     for (const part of [...this.links.values(), ...this.objects.values()]) {
-      if (part.column < 0) continue;
-      setPose(part.group, run.frames, frame * run.width + part.column);
-      if (share === 0) continue;
-      const at = next * run.width + part.column;
-      part.group.position.lerp(new THREE.Vector3(...run.frames.subarray(at, at + 3)), share);
-      const [w, x, y, z] = run.frames.subarray(at + 3, at + 7);
-      part.group.quaternion.slerp(new THREE.Quaternion(x, y, z, w), share);
+      if (part.column >= 0) this.#moveTo(part, time);
     }
     this.#showContacts(run.contactsOf(frame));
-    this.touched.geometry.setDrawRange(0, this.shown.points ? run.touchedBy(time) : 0);
+    for (const {points, times} of this.clouds) {
+      points.geometry.setDrawRange(0, this.shown.points && times[0] <= time ? indexAt(times, time) + 1 : 0);
+    }
     for (const {mesh, column} of this.marks) {
       if (column >= 0) mesh.position.fromArray(run.frames, frame * run.width + column);
       mesh.visible = this.shown.references;
