@@ -63,7 +63,7 @@ Impedance::Impedance(const BuildContext& context)
       has_orientation_(context.values.has("orientation")),
       speed_(context.values.has("speed") ? context.values.real("speed") : infinity),
       turn_speed_(context.values.has("turn-speed") ? context.values.real("turn-speed") : infinity) {
-  if (has_position_) position_W_ = context.values.vector3("position");
+  if (has_position_) reference_position_W_ = position_W_ = context.values.vector3("position");
   if (has_orientation_) {
     const Eigen::Vector3d rpy = context.values.vector3("orientation");
     orientation_W_ = (Eigen::AngleAxisd(rpy[2], Eigen::Vector3d::UnitZ()) *
