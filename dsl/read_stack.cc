@@ -412,6 +412,7 @@ class StackReader {
     if (!run || !run->complete) return;
     stack_.run.duration = run->values.real("duration");
     stack_.run.seed = static_cast<std::uint64_t>(run->values.integer("seed"));
+    if (run->values.has("count-while")) stack_.run.count_while = run->values.text("count-while");
     checkDuration(*run);
     for (const CheckedElement* target : run->all("target")) readTarget(*target);
     stack_.run.measures = readList(root, "run", ElementKind::measure);
@@ -480,8 +481,10 @@ class StackReader {
       references.check(*level);
       for (const CheckedElement& task : level->children) references.checkAll(task);
     }
-    for (const CheckedElement* run : root.all("run"))
+    for (const CheckedElement* run : root.all("run")) {
+      references.check(*run);
       for (const CheckedElement& recorder : run->children) references.checkAll(recorder);
+    }
     references.warnOfUnusedSignals(sources);
   }
 

@@ -67,6 +67,7 @@ struct TargetDescription {
 struct RunOptions {
   double duration = 10;                                            ///< s
   std::uint64_t seed = 1;
+  std::string count_while;                                         ///< a scalar port, "signal.port"; "" = always
   std::string columns = "default";                                 ///< "default" | "all"
   double record_rate = 100;                                        ///< Hz, rows of log.csv
   std::vector<TargetDescription> targets;

@@ -313,7 +313,11 @@ ElementRow runRow() {
                           .description = "Simulated time, at least one tick.", .lower = 0, .upper = longest_run,
                           .lower_open = true},
                          {.name = "seed", .type = ValueType::integer, .default_text = std::to_string(run_options.seed),
-                          .description = "Of every draw; 0 draws no jitter.", .lower = 0}},
+                          .description = "Of every draw; 0 draws no jitter.", .lower = 0},
+                         {.name = "count-while", .type = ValueType::port,
+                          .description = "Figures of contacts count what happens while this number is above 0.5, and "
+                                         "nothing else; not given: all from the first touch on.",
+                          .port_type = "scalar"}},
           .children = {{"record", 0, 1}, {"@measure"}, {"@recorder"}, {"target"}}};
 }
 

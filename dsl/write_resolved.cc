@@ -161,7 +161,8 @@ std::string writeResolved(const Stack& stack) {
     out += "    <alternative" + attributeText("backend", other.row().name) + attributesOf(other.row(), other) + "/>\n";
   if (!stack.alternatives.empty()) out += "  </controller>\n";
   out += "  <run" + attributeText("duration", control::formatNumber(stack.run.duration)) +
-         attributeText("seed", std::to_string(stack.run.seed)) + ">\n    <record" +
+         attributeText("seed", std::to_string(stack.run.seed)) +
+         (stack.run.count_while.empty() ? "" : attributeText("count-while", stack.run.count_while)) + ">\n    <record" +
          attributeText("columns", stack.run.columns) +
          attributeText("rate", control::formatNumber(stack.run.record_rate)) + "/>\n";
   for (const ElementInstance& measure : stack.run.measures) out += leaf("    ", measure.values, sources);

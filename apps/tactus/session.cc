@@ -76,6 +76,7 @@ Session::Session(dsl::Stack stack, const control::Registry& registry)
                                                         static_cast<int>(scene_.objects.size()), desiredLinks(),
                                                         !stack_.robot.self_contact.empty());
   measures_ = std::make_unique<runtime::Measures>(dsl::makeMeasures(stack_, registry_, *controller_, scene_));
+  if (!stack_.run.count_while.empty()) contacts_->countWhile(findScalar(stack_.run.count_while));
   for (size_t i = 0; i < stack_.signals.size() && !touched_points_; ++i) {
     touched_points_ = findPort<control::TouchedPoints>(i, "points");
   }
@@ -107,6 +108,14 @@ const T* Session::findPort(size_t signal, const std::string& port) const {
     }
   }
   return nullptr;
+}
+
+const double* Session::findScalar(const std::string& reference) const {
+  const std::size_t dot = reference.find('.');
+  const std::string source = reference.substr(0, dot), port = reference.substr(dot + 1);
+  for (size_t i = 0; i < stack_.signals.size(); ++i)
+    if (stack_.signals[i].name == source) return findPort<double>(i, port);
+  return static_cast<const double*>(controller_->readings().port(source, port));
 }
 
 std::vector<int> Session::desiredLinks() const {

@@ -87,6 +87,8 @@ class Session {
   /// The value behind a port of that type and name; null when the signal's element has none.
   template <class T>
   const T* findPort(size_t signal, const std::string& port) const;
+  /// The number behind "source.port" of a signal or a sensor; null where there is none.
+  const double* findScalar(const std::string& reference) const;
   std::vector<int> desiredLinks() const;
   void findFeatures();
   void archiveParts(control::Archive& archive);

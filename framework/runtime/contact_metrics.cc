@@ -34,7 +34,6 @@ void ContactMetrics::update(const std::vector<control::ContactRecord>& records, 
     }
     pair_force_[static_cast<size_t>(record.link * objects_ + record.object)] += record.force_N;
   }
-  self_peak_ = std::max(self_peak_, now_.self_max_N);
 
   double sum = 0;
   int switched = 0;
@@ -58,6 +57,8 @@ void ContactMetrics::update(const std::vector<control::ContactRecord>& records, 
   }
   if (now_.contacts > 0) now_.mean_N = sum / now_.contacts;
 
+  if (count_while_ && !(*count_while_ > 0.5)) return;
+  self_peak_ = std::max(self_peak_, now_.self_max_N);
   undesired_peak_ = std::max(undesired_peak_, now_.undesired_max_N);
   if (!touched() && now_.contacts == 0) return;
   ++ticks_;

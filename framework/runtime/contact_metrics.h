@@ -29,7 +29,8 @@ class TouchSwitch {
 ///
 /// A *contact* of a tick is a pair (link, object) whose records' normal forces sum to more than 0 N.  It is
 /// *desired* when its link is one of the desired links.  The *first touch* is the first tick with a desired
-/// contact; everything but the undesired peak is counted from that tick on.
+/// contact; everything but the undesired peak is counted from that tick on.  With `countWhile` no figure takes anything
+/// from the other ticks, as if they had not been: the first touch is the first one of those that count.
 ///
 /// | metric                     | definition                                                                       |
 /// |----------------------------|----------------------------------------------------------------------------------|
@@ -59,6 +60,9 @@ class ContactMetrics final : public control::Observer {
   /// `desired_links` are indices into Robot::links; `touches_itself`: the robot has links that touch each other.
   ContactMetrics(int links, int objects, const std::vector<int>& desired_links, bool touches_itself = false);
 
+  /// Figures come from ticks in which this port is above 0.5 alone; null: from all.
+  void countWhile(const double* port) { count_while_ = port; }
+
   void observe(const control::ObservedTick& tick) override { update(tick.truth.contacts, tick.controller.period()); }
   void update(const std::vector<control::ContactRecord>& records, double dt);
 
@@ -72,6 +76,7 @@ class ContactMetrics final : public control::Observer {
  private:
   int objects_;
   bool touches_itself_;
+  const double* count_while_ = nullptr;
   std::vector<bool> desired_;
   std::vector<double> pair_force_;                                 ///< N, link-major
   std::vector<TouchSwitch> switches_;

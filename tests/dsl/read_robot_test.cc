@@ -210,6 +210,73 @@ TEST(Models, TheCombinedRobotIsTheUnionOfItsParts) {
   }
 }
 
+TEST(Models, Hand1IsTheSameRobotWhoseFingersBendBothWays) {
+  const Robot known = readCleanly(models + "lwr_allegro.urdf"), hand = readCleanly(models + "lwr_allegro_hand1.urdf");
+  ASSERT_EQ(hand.links.size(), known.links.size());
+  ASSERT_EQ(hand.joints.size(), known.joints.size());
+  for (std::size_t i = 0; i < hand.links.size(); ++i) expectSameLink(known.links[i], hand.links[i]);
+  int released = 0;
+  for (std::size_t i = 0; i < hand.joints.size(); ++i) {
+    description::Joint expected = known.joints[i];
+    const bool thumb = expected.name.starts_with("thumb_");
+    if (expected.name.ends_with("_medial") || expected.name.ends_with("_distal") ||
+        (expected.name.ends_with("_proximal") && !thumb)) {
+      expected.lower = -expected.upper;
+      ++released;
+    }
+    expectSameJoint(known, expected, hand, hand.joints[i]);
+  }
+  EXPECT_EQ(released, 11);
+  EXPECT_EQ(hand.skin, known.skin);
+}
+
+TEST(Models, Hand2HasAFourthFingerLikeTheOthersAndAPalmThatCarriesIt) {
+  const Robot known = readCleanly(models + "lwr_allegro.urdf"), hand = readCleanly(models + "lwr_allegro_hand2.urdf");
+  ASSERT_EQ(hand.links.size(), known.links.size() + 5);
+  for (const auto& found : hand.links) {
+    if (found.name == "palm") continue;
+    description::Link expected = link(known, found.name.starts_with("little_") ? "ring" + found.name.substr(6) : found.name);
+    expected.name = found.name;
+    expectSameLink(expected, found);
+  }
+  const auto& palm = link(hand, "palm");
+  const Eigen::Vector3d size(0.0408, 0.1565, 0.095);
+  EXPECT_EQ(std::get<description::BoxShape>(palm.shapes.at(0)).size, size);
+  EXPECT_NEAR(palm.mass, link(known, "palm").mass * 0.1565 / 0.113, 1e-4);
+  EXPECT_TRUE(palm.inertia.diagonal().isApprox(boxMoments(palm.mass, size), 2e-3));
+
+  // Four knuckles in a row, evenly about the middle, a finger's pitch apart; the thumb keeps its place by the index.
+  const double pitch = joint(known, "index_abduction").origin.translation().y();
+  const char* fingers[] = {"index", "middle", "ring", "little"};
+  for (int i = 0; i < 4; ++i) {
+    const auto& knuckle = joint(hand, std::string(fingers[i]) + "_abduction").origin;
+    EXPECT_NEAR(knuckle.translation().y(), (1.5 - i) * pitch, 1e-12);
+    EXPECT_NEAR(knuckle.translation().x(), 0, 1e-12);
+    EXPECT_LT(std::abs(knuckle.translation().y()) + 0.0138, size.y() / 2 + 0.001) << "its base stands on the palm";
+  }
+  EXPECT_NEAR(joint(hand, "thumb_opposition").origin.translation().y() - joint(hand, "index_abduction").origin.translation().y(),
+              joint(known, "thumb_opposition").origin.translation().y() - pitch, 1e-12);
+  for (const auto& one : hand.joints) {
+    if (one.name.ends_with("_abduction") || one.name == "thumb_opposition") continue;
+    description::Joint expected = joint(known, one.name.starts_with("little_") ? "ring" + one.name.substr(6) : one.name);
+    EXPECT_EQ(one.origin.matrix(), expected.origin.matrix()) << one.name;
+    EXPECT_EQ(one.lower, expected.lower) << one.name;
+    EXPECT_EQ(one.upper, expected.upper) << one.name;
+    EXPECT_EQ(one.rotor_inertia, expected.rotor_inertia) << one.name;
+  }
+  const auto size_of = [](const std::vector<description::Group>& groups, const std::string& name) -> std::size_t {
+    for (const auto& group : groups)
+      if (group.name == name) return group.members.size();
+    return 0;
+  };
+  EXPECT_EQ(size_of(hand.link_groups, "fingers"), 12u);
+  EXPECT_EQ(size_of(hand.link_groups, "hand"), 26u);
+  EXPECT_EQ(size_of(hand.joint_groups, "fingers"), 16u);
+  EXPECT_EQ(size_of(hand.joint_groups, "hand"), 20u);
+  EXPECT_EQ(size_of(hand.joint_groups, "abduction"), 4u);
+  EXPECT_EQ(hand.skin.size(), known.skin.size() + 5);
+}
+
 TEST(Models, GroupsHoldWhatTheirNamesSay) {
   const Robot robot = readCleanly(models + "lwr_allegro.urdf");
   const auto size = [](const std::vector<description::Group>& groups, const std::string& name) -> std::size_t {

@@ -61,7 +61,7 @@ const std::string everything = R"(<stack format="1" name="whole">
   <controller backend="all" rate="500" torque-rate="20" ramp="0.3" hold="0.04" on-fault="end" deadline-iterations="50"
               deadline-us="400">
     <alternative backend="first" tolerance="0.5"/></controller>
-  <run duration="4" seed="7"><target metric="m" lower="1" upper="2"/><record columns="all" rate="50"/></run>
+  <run duration="4" seed="7" count-while="a.value"><target metric="m" lower="1" upper="2"/><record columns="all" rate="50"/></run>
 </stack>
 )";
 
@@ -196,6 +196,7 @@ const std::vector<Change> changes{
     {"alternative/backend", "backend=\"first\"", "backend=\"nowhere\""},
     {"run/duration", "duration=\"4\"", "duration=\"5\""},
     {"run/seed", "seed=\"7\"", "seed=\"8\""},
+    {"run/count-while", "a.value", "a.nothing"},
     {"target/metric", "metric=\"m\"", "metric=\"n\""},
     {"target/lower", "lower=\"1\"", "lower=\"0\""},
     {"target/upper", "upper=\"2\"", "upper=\"3\""},

@@ -150,5 +150,27 @@ TEST(TouchSwitch, HoldStartsAnewAfterEveryBreak) {
   EXPECT_FALSE(link.on());
 }
 
+TEST_F(ContactMetricsTest, WhatIsNotToCountLeavesNoFigure) {
+  double counts = 0;
+  metrics = ContactMetrics(3, 2, {0, 1}, true);
+  metrics.countWhile(&counts);
+  ContactRecord self = touch(0, -1, 3);
+  self.other_link = 1;
+  ticks(20, {touch(0, 0, 5), touch(2, 0, 4), self});
+  EXPECT_EQ(metrics.now().max_N, 5);                               // the log has it all the same
+  EXPECT_TRUE(std::isnan(value("contact_force_peak_N")));
+  EXPECT_EQ(value("undesired_force_peak_N"), 0);
+  EXPECT_EQ(value("self_force_peak_N"), 0);
+  counts = 1;
+  ticks(10, {});
+  ticks(10, {touch(0, 0, 0.5)});
+  counts = 0;
+  ticks(10, {touch(0, 0, 7)});
+  EXPECT_DOUBLE_EQ(value("contact_force_peak_N"), 0.5);
+  EXPECT_DOUBLE_EQ(value("contact_force_mean_N"), 0.5);
+  // Of 10 ticks the first five and the last are those of a link whose switch is off; it went off while nothing touched.
+  EXPECT_NEAR(value("links_in_contact_mean"), 0.6, 1e-12);
+}
+
 }  // namespace
 }  // namespace tactus::runtime
