@@ -124,8 +124,9 @@ class StudyReader {
 
   void readComparison(const CheckedElement& element) {
     if (!element.values.has("metric") || !element.values.has("by") || !element.values.has("baseline")) return;
-    const StudyComparison comparison{element.values.text("metric"), element.values.text("by"),
-                                     element.values.text("baseline")};
+    StudyComparison comparison{element.values.text("metric"), element.values.text("by"), element.values.text("baseline"),
+                               {}};
+    if (element.values.has("over")) comparison.over = splitValues(element.values.text("over"));
     if (!study_.metrics.empty()) {
       std::vector<std::string> reported;
       for (const PlacedName& metric : study_.metrics) reported.push_back(metric.name);
@@ -141,7 +142,10 @@ class StudyReader {
     if (comparison.by == by_back_end)
       for (const PlacedName& back_end : study_.back_ends) levels.push_back(back_end.name);
     if (!expectOneOf(element, "baseline", comparison.baseline, levels, "'" + comparison.by + "' has no level")) return;
-    study_.comparisons.push_back(comparison);
+    std::erase(factors, comparison.by);
+    for (const std::string& factor : comparison.over)
+      if (!expectOneOf(element, "over", factor, factors, "there is no other factor")) return;
+    study_.comparisons.push_back(std::move(comparison));
   }
 
   /// An attribute that only the table gives is told at its element.

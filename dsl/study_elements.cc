@@ -80,7 +80,10 @@ ElementRow compareRow() {
                          {.name = "by", .type = ValueType::text, .default_text = "backend",
                           .description = "`backend`, or the parameter of a factor."},
                          {.name = "baseline", .type = ValueType::text, .required = true,
-                          .description = "One of that factor's values, or of the back ends."}}};
+                          .description = "One of that factor's values, or of the back ends."},
+                         {.name = "over", .type = ValueType::text,
+                          .description = "Other factors, separated by blanks, whose pairs count together: one "
+                                         "comparison of all their conditions, not one for each."}}};
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ ordered_json toJson(const StudyPlan& plan) {
   ordered_json factors = ordered_json::array(), comparisons = ordered_json::array();
   for (const Factor& factor : plan.factors) factors.push_back({{"name", factor.name}, {"levels", factor.levels}});
   for (const dsl::StudyComparison& one : plan.comparisons)
-    comparisons.push_back({{"metric", one.metric}, {"by", one.by}, {"baseline", one.baseline}});
+    comparisons.push_back({{"metric", one.metric}, {"by", one.by}, {"baseline", one.baseline}, {"over", one.over}});
   return {{"format", study_format},
           {"study", plan.name},
           {"keep", plan.keeps_runs ? "runs" : "metrics"},
@@ -88,8 +88,11 @@ StudyPlan planFromJson(const std::string& file, const ordered_json& json) {
   plan.first_seed = static_cast<std::uint64_t>(wholeNumber(root.at("seeds").at("from"), file, "from", 0));
   plan.seeds = wholeNumber(root.at("seeds").at("count"), file, "count", 1);
   for (const JsonPlace& metric : root.at("metrics").items()) plan.metrics.push_back(metric.text());
-  for (const JsonPlace& one : root.at("compare").items())
-    plan.comparisons.push_back({one.at("metric").text(), one.at("by").text(), one.at("baseline").text()});
+  for (const JsonPlace& one : root.at("compare").items()) {
+    dsl::StudyComparison comparison{one.at("metric").text(), one.at("by").text(), one.at("baseline").text(), {}};
+    for (const JsonPlace& factor : one.at("over").items()) comparison.over.push_back(factor.text());
+    plan.comparisons.push_back(std::move(comparison));
+  }
   for (const auto& [what, hash] : root.at("inputs").members()) plan.inputs[what] = hash.text();
   return plan;
 }

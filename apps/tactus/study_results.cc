@@ -45,20 +45,34 @@ ConditionFigures figuresOfCondition(const StudyResults& results, const std::stri
   return found;
 }
 
-PairedComparison compare(const StudyResults& results, const dsl::StudyComparison& asked, size_t metric, size_t factor,
-                         const std::vector<size_t>& levels, size_t baseline) {
-  PairedComparison found{asked, results.plan.level(levels, factor), levels, 0, {}, {}, {}, 0, 0};
-  std::vector<size_t> base = levels;
-  base[factor] = baseline;
-  const ConditionFigures& here = results.figures(metric, results.plan.conditionOf(levels));
-  const ConditionFigures& there = results.figures(metric, results.plan.conditionOf(base));
-  std::vector<double> differences;
+/// Whether pairs of that factor's levels count together.
+bool isPooled(const StudyPlan& plan, const dsl::StudyComparison& asked, size_t factor) {
+  return std::find(asked.over.begin(), asked.over.end(), plan.factors[factor].name) != asked.over.end();
+}
+
+void addDifferences(const ConditionFigures& here, const ConditionFigures& there, std::vector<double>& differences) {
   for (size_t i = 0; i < here.seeds.size(); ++i) {
     const auto same = std::find(there.seeds.begin(), there.seeds.end(), here.seeds[i]);
     if (same != there.seeds.end())
       differences.push_back(here.values[i] - there.values[static_cast<size_t>(same - there.seeds.begin())]);
   }
-  found.left_out = results.plan.seeds - static_cast<long>(differences.size());
+}
+
+PairedComparison compare(const StudyResults& results, const dsl::StudyComparison& asked, size_t metric, size_t factor,
+                         const std::vector<size_t>& levels, size_t baseline) {
+  const StudyPlan& plan = results.plan;
+  PairedComparison found{asked, plan.level(levels, factor), levels, 0, {}, {}, {}, 0, 0};
+  std::vector<double> differences;
+  for (long condition = 0; condition < plan.conditions(); ++condition) {
+    std::vector<size_t> here = plan.levelsOf(condition);
+    bool counts = true;
+    for (size_t f = 0; f < here.size(); ++f) counts = counts && (here[f] == levels[f] || isPooled(plan, asked, f));
+    if (!counts) continue;
+    here[factor] = baseline;
+    addDifferences(results.figures(metric, condition), results.figures(metric, plan.conditionOf(here)), differences);
+    found.left_out += plan.seeds;
+  }
+  found.left_out -= static_cast<long>(differences.size());
   found.differences = figuresOf(differences);
   found.student = studentTest(differences);
   found.wilcoxon = wilcoxonTest(differences);
@@ -80,7 +94,9 @@ void addComparisons(const dsl::StudyComparison& asked, StudyResults& results) {
   const size_t baseline = indexOf(by->levels, asked.baseline);
   for (long condition = 0; condition < plan.conditions(); ++condition) {
     const std::vector<size_t> levels = plan.levelsOf(condition);
-    if (levels[factor] != baseline)
+    bool first = true;
+    for (size_t f = 0; f < levels.size(); ++f) first = first && (levels[f] == 0 || !isPooled(plan, asked, f));
+    if (first && levels[factor] != baseline)
       results.comparisons.push_back(compare(results, asked, metric, factor, levels, baseline));
   }
 }
@@ -106,7 +122,7 @@ ordered_json number(double value) { return std::isfinite(value) ? ordered_json(v
 std::string placeOf(const StudyPlan& plan, const PairedComparison& one) {
   std::string text;
   for (size_t i = 0; i < plan.factors.size(); ++i)
-    if (plan.factors[i].name != one.asked.by && plan.factors[i].levels.size() > 1)
+    if (plan.factors[i].name != one.asked.by && plan.factors[i].levels.size() > 1 && !isPooled(plan, one.asked, i))
       text += (text.empty() ? "" : ", ") + (plan.factors[i].name == "backend" ? "" : plan.factors[i].name + "=") +
               plan.level(one.levels, i);
   return text;
@@ -220,7 +236,7 @@ ordered_json comparisonTable(const StudyResults& results) {
                      {"baseline", one.asked.baseline}};
     for (size_t f = 0; f < results.plan.factors.size(); ++f) {
       const std::string& name = results.plan.factors[f].name;
-      row["at_" + name] = name == one.asked.by ? ordered_json() : ordered_json(results.plan.level(one.levels, f));
+      row["at_" + name] = name == one.asked.by || isPooled(results.plan, one.asked, f) ? ordered_json() : ordered_json(results.plan.level(one.levels, f));
     }
     row["pairs"] = one.differences.n;
     row["left_out"] = one.left_out;

@@ -21,12 +21,13 @@ struct ConditionFigures {
   SampleFigures figures;
 };
 
-/// One figure of a condition against that of its baseline, paired by seed.
+/// One figure of a condition against that of its baseline, paired by seed; of all conditions that differ in the factors
+/// of `asked.over` together.
 struct PairedComparison {
   dsl::StudyComparison asked;
   std::string level;
-  std::vector<size_t> levels;                                      ///< of the condition
-  long left_out = 0;                                               ///< seeds without a figure on either side
+  std::vector<size_t> levels;                                      ///< of the condition, 0 of factors of asked.over
+  long left_out = 0;                                               ///< pairs without a figure on either side
   SampleFigures differences;                                       ///< level − baseline
   StudentTest student;
   WilcoxonTest wilcoxon;

@@ -53,7 +53,8 @@ const std::string kInside = R"(  <factor parameter="press" values="0.3 0.6"/>
   <backends names="null-space qp/active-set"/>
   <metric name="contact_force_mean_N"/><metric name="contact_force_peak_N"/>
   <compare metric="contact_force_peak_N" by="press" baseline="0.3"/>
-  <compare metric="contact_force_peak_N" baseline="null-space"/>)";
+  <compare metric="contact_force_peak_N" baseline="null-space"/>
+  <compare metric="contact_force_peak_N" baseline="null-space" over="press"/>)";
 const std::string kShort = "duration=\"0.6\"";
 
 void expectSameTables(const Case& one, const std::string& here, const std::string& there) {
@@ -126,7 +127,7 @@ TEST(StudyCommand, TablesSayWhatTheRunsSaid) {
     EXPECT_EQ(row["max"].get<double>(), *std::max_element(values.begin(), values.end()));
   }
   const nlohmann::json comparisons = study.json("out/comparisons.json");
-  ASSERT_EQ(comparisons.size(), 4u);
+  ASSERT_EQ(comparisons.size(), 5u);
   const nlohmann::json& first = comparisons.front();
   EXPECT_EQ(first["level"], "0.6");
   EXPECT_EQ(first["at_backend"], "null-space");
@@ -136,8 +137,15 @@ TEST(StudyCommand, TablesSayWhatTheRunsSaid) {
   EXPECT_NEAR(first["mean_difference"].get<double>(), difference / 4, 1e-12);
   EXPECT_NEAR(first["t"].get<double>(), first["d_z"].get<double>() * 2, 1e-9);
   EXPECT_EQ(first["wilcoxon_p"], 0.125) << "four differences of one sign: 2 of 16 sums";
-  EXPECT_EQ(first["wilcoxon_p_holm"], 0.5) << "the smallest of four";
+  EXPECT_EQ(first["wilcoxon_p_holm"], 0.5) << "the second smallest of five";
   EXPECT_GE(first["t_p_holm"].get<double>(), first["t_p"].get<double>());
+  // Over both presses: the pairs of two comparisons in one.
+  const nlohmann::json& pooled = comparisons.back();
+  EXPECT_TRUE(pooled["at_press"].is_null());
+  EXPECT_EQ(pooled["pairs"], 8);
+  EXPECT_EQ(pooled["left_out"], 0);
+  EXPECT_NEAR(pooled["mean_difference"].get<double>(),
+              (comparisons[2]["mean_difference"].get<double>() + comparisons[3]["mean_difference"].get<double>()) / 2, 1e-12);
   // The CSV holds the same numbers.
   const runtime::CsvTable table = runtime::CsvTable::read(study.folder.file("out/comparisons.csv"));
   EXPECT_EQ(table.numbers(table.column("mean_difference")).front(), first["mean_difference"].get<double>());
@@ -364,6 +372,8 @@ TEST(StudyCommand, ErrorsStandAtTheirPlace) {
       {"<compare metric=\"a\" baseline=\"qp\"/>", "error[E014]: the study has no factor 'backend'; there is none"},
       {"<backends names=\"qp hqp\"/><compare metric=\"a\" baseline=\"hq\"/>",
        "'backend' has no level 'hq'; there is qp, hqp"},
+      {"<backends names=\"qp hqp\"/><compare metric=\"a\" baseline=\"qp\" over=\"backend\"/>",
+       "there is no other factor 'backend'; there is none"},
       {"<factors/>", "error[E011]"},
       {"<robot model=\"a\"/>", "error[E015]"},
       {"<metric name=\"${press}\"/>", "error[E036]"}};
