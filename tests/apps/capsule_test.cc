@@ -373,10 +373,17 @@ TEST(Capsule, AFullDiskIsAWarning) {
   const TemporaryFolder folder;
   const std::string run = folder.file("run");
   Settings full;
-  full.largest_file = 20'000;                                      // capsules of 23 joints pass it, the log does not
+  full.largest_file = 13'000;                                      // capsules of 23 joints pass it, the log does not
+  const std::string stack = folder.write("stack.xml", R"(<stack format="1" name="still">
+  <robot model="lwr_allegro"/>
+  <level priority="1"><posture name="rest" joints="arm hand"/></level>
+  <level priority="2"><impedance name="place" frame="palm"/></level>
+  <controller backend="null-space"/>
+  <run duration="0.01"/>
+</stack>
+)");
   const Outcome outcome =
-      tactus({"run", std::string(TACTUS_SOURCE_DIR) + "/examples/explore_table/stack.xml", "--plugin", kPlugin,
-              "--backend", "naughty.moody/from=3", "--duration", "0.01", "--out", run}, full);
+      tactus({"run", stack, "--plugin", kPlugin, "--backend", "naughty.moody/from=3", "--out", run}, full);
   EXPECT_THAT(capsulesIn(run), ElementsAre());
   EXPECT_THAT(outcome.err, HasSubstr("tactus run: warning: no capsule: " + run + "/capsule-3.json: cannot be written"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("capsule-4.json"))) << "said once";
