@@ -372,13 +372,18 @@ TEST(Capsule, ABackEndMustBeNamedForAnyOtherFile) {
 TEST(Capsule, AFullDiskIsAWarning) {
   const TemporaryFolder folder;
   const std::string run = folder.file("run");
-  folder.write("stack.xml", R"(<stack format="1" name="still"><robot model="lwr_allegro"/>
-    <level priority="1"><posture name="rest" joints="arm" stiffness="10" damping="1"/></level>
-    <controller backend="null-space"/><run duration="0.01"/></stack>)");
   Settings full;
-  full.largest_file = 8'000;                                      // capsules of 23 joints pass it, log and scene do not
-  const Outcome outcome = tactus({"run", folder.file("stack.xml"), "--plugin", kPlugin,
-                                  "--backend", "naughty.moody/from=3", "--out", run}, full);
+  full.largest_file = 13'000;                                      // capsules of 23 joints pass it, the log does not
+  const std::string stack = folder.write("stack.xml", R"(<stack format="1" name="still">
+  <robot model="lwr_allegro"/>
+  <level priority="1"><posture name="rest" joints="arm hand"/></level>
+  <level priority="2"><impedance name="place" frame="palm"/></level>
+  <controller backend="null-space"/>
+  <run duration="0.01"/>
+</stack>
+)");
+  const Outcome outcome =
+      tactus({"run", stack, "--plugin", kPlugin, "--backend", "naughty.moody/from=3", "--out", run}, full);
   EXPECT_THAT(capsulesIn(run), ElementsAre());
   EXPECT_THAT(outcome.err, HasSubstr("tactus run: warning: no capsule: " + run + "/capsule-3.json: cannot be written"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("capsule-4.json"))) << "said once";
