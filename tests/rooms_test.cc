@@ -60,7 +60,7 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"plugins", {"framework"}},
     {"sim", {"framework/geometry", "framework/description", "framework/runtime", "framework/control/archive.h",
              "framework/control/sensed.h"}},
-    {"apps", {"framework", "tasks", "dsl", "sim", "conformance"}},
+    {"apps", {"framework", "tasks", "dsl", "plugins/grasp", "sim", "conformance"}},
 };
 
 /// Foreign libraries by the start of the included path, and the rooms that may include them.
