@@ -13,6 +13,7 @@ namespace {
 
 constexpr int directions = 8;
 constexpr int newton_steps = 4;
+constexpr int check_every = 16;                                    // looks, at how well the goal is known
 constexpr double on_surface = 0.2;                                 // of the mean, where a place counts as on it
 const Vector3d nowhere = Vector3d::Constant(1e9);
 
@@ -106,6 +107,7 @@ void SurfaceMap::doUpdate(const Tick& tick) {
   if (++tick_ >= every_) {
     tick_ = 0;
     if (!learn()) look();
+    if (has_goal_ && looked_ % check_every == 0) goal_uncertainty_ = uncertaintyAt(goal_W_);
   }
   followGoal(tick.time);
   next_.known = has_goal_;
@@ -167,10 +169,11 @@ bool SurfaceMap::placeAround(int point, int direction, Vector3d& place_W) const 
 
 void SurfaceMap::look() {
   if (points_W_.empty()) return;
+  // Who waits for a goal takes the best so far, once each point has been looked around in some direction.
+  if (!has_goal_ && best_.found && looked_ >= static_cast<int>(points_W_.size())) choose();
   if (looked_ >= directions * static_cast<int>(points_W_.size())) {
     most_uncertain_ = best_.found ? best_.uncertainty : 0;
     if (!has_goal_) choose();
-    goal_uncertainty_ = has_goal_ ? uncertaintyAt(goal_W_) : 0;
     best_ = {};
     looked_ = 0;
     return;
@@ -194,6 +197,8 @@ void SurfaceMap::choose() {
   has_goal_ = true;
   goal_W_ = best_.point_W;
   goal_uncertainty_ = best_.uncertainty;
+  best_ = {};
+  looked_ = 0;
   nearest_ = 1e9;
   ++next_.number;
 }
