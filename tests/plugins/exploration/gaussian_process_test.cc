@@ -88,7 +88,7 @@ TEST(GaussianProcess, EveryPointLowersTheVarianceEverywhere) {
       last[k] = now;
     }
   }
-  EXPECT_LT(last.maxCoeff(), 0.8) << "and somewhere it did";
+  EXPECT_LT(last.minCoeff(), 0.3) << "and somewhere it did, by much";
 }
 
 // An implicit surface as the surface map makes it: 0 on the sphere, −1 a depth behind, prior mean 1.

@@ -39,7 +39,7 @@ TEST(SurfaceSamples, LeaveOutWhatLiesInsideOfOtherShapes) {
   description::Scene scene;
   scene.objects = {ballAt({0, 0, 0}, 0.1), ballAt({0, 0, -0.15}, 0.1)};
   description::Primitive second{std::make_shared<geometry::Sphere>(0.08)};
-  second.pose.translation() = {0.1, 0, 0};
+  second.pose.translation() = Eigen::Vector3d(0.1, 0, 0);
   scene.objects[0].primitives.push_back(second);
   const auto samples = sampleSurface(scene, 0, 1000);
   ASSERT_EQ(samples.size(), 1000u);
