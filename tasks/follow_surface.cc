@@ -20,7 +20,8 @@ void FollowSurface::registerIn(Registry& registry) {
   row.attributes = {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link that follows."},
       {.name = "along", .type = ValueType::points, .unit = "m",
-       .description = "Key positions, world axes, in order; they need not lie on the surface.", .count = 3,
+       .description = "Key positions, world axes, in order; they need not lie on the surface. Without them, and without "
+                      "`towards`, the link stays where it is on the surface.", .count = 3,
        .in_world = InWorld::positions, .reached_by = "frame"},
       {.name = "towards", .type = ValueType::port,
        .description = "Instead of `along`: the place that a signal names, e.g. map.next.", .port_type = "place"},
@@ -112,11 +113,11 @@ FollowSurface::FollowSurface(const BuildContext& context)
       has_heading_(context.values.has("heading")),
       heading_W_(has_heading_ ? direction(context, "heading") : Eigen::Vector3d::Zero()),
       normal_W_(direction(context, "approach")) {
-  if (context.values.has("along") == context.values.has("towards"))
-    throw ElementError("along", "where to: give either along, key positions, or towards, a signal's place");
+  if (context.values.has("along") && context.values.has("towards"))
+    throw ElementError("along", "where to: give along, key positions, or towards, a signal's place, not both");
   if (context.values.has("towards")) {
     towards_ = &context.port<Place>("towards");
-  } else {
+  } else if (context.values.has("along")) {
     const std::vector<double>& along = context.values.numbers("along");
     for (std::size_t i = 0; i + 2 < along.size(); i += 3) keys_W_.emplace_back(along[i], along[i + 1], along[i + 2]);
     if (keys_W_.empty()) throw ElementError("along", "along needs at least one key position 'x y z'");
@@ -138,6 +139,7 @@ FollowSurface::FollowSurface(const BuildContext& context)
 
 const Eigen::Vector3d& FollowSurface::key() const {
   if (towards_) return towards_->position_W;
+  if (keys_W_.empty()) return reference_W_;
   return keys_W_[std::min<std::size_t>(key_index_, keys_W_.size() - 1)];
 }
 
@@ -223,7 +225,7 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   // Tangential way to the key; p_r − p by A.1.6.
   Eigen::Vector3d way = key() - p_W;
   way -= way.dot(normal_W_) * normal_W_;
-  if (towards_ && !towards_->known) way.setZero();
+  if (towards_ ? !towards_->known : keys_W_.empty()) way.setZero();
   distance_ = way.norm();
   const Eigen::Vector3d x_e = way * (pull_ * reach_ / std::max(distance_, near_));
   key_W_ = key();

@@ -66,7 +66,7 @@ class FollowSurface final : public control::Task {
   double keys_passed_ = 0, keys_given_up_ = 0, key_number_ = 0;
   double last_key_time_ = 0;
   double distance_ = 0;
-  Eigen::Vector3d key_W_, reference_W_;                            ///< p_f, p_r of this tick
+  Eigen::Vector3d key_W_ = Eigen::Vector3d::Zero(), reference_W_ = Eigen::Vector3d::Zero();  ///< p_f, p_r of this tick
 };
 
 }  // namespace tactus::tasks

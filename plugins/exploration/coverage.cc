@@ -17,14 +17,14 @@ void Coverage::registerIn(Registry& registry) {
   row.description = "How much of an object's surface has been touched, of what the robot can reach.";
   row.source = "thesis 4.4.1 (coverage of the reconstruction)";
   row.attributes = {
-      {.name = "of", .type = ValueType::object, .required = true, .description = "The object."},
+      {.name = "of", .type = ValueType::object, .description = "The object; not given: each of the scene that has ends."},
       {.name = "from", .type = ValueType::port, .required = true, .description = "Touched points, e.g. touch.points.",
        .port_type = "touched-points"},
       {.name = "radius", .type = ValueType::real, .unit = "m", .default_text = "0.01",
        .description = "A point of the surface is covered when a touched one is as near as this.", .lower = 0,
        .lower_open = true},
       {.name = "samples", .type = ValueType::integer, .default_text = "1000",
-       .description = "Points of the surface, drawn evenly.", .lower = 1, .upper = 100000},
+       .description = "Points of an object's surface, drawn evenly.", .lower = 1, .upper = 100000},
       {.name = "links", .type = ValueType::links, .required = true,
        .description = "What one of these links can reach with its pad, by inverse kinematics, counts as reachable."},
       {.name = "pad-axis", .type = ValueType::reals, .unit = "1", .default_text = "1 0 0",
@@ -46,7 +46,8 @@ Coverage::Coverage(const RecorderContext& context)
       folder_(context.folder),
       file_(folder_ + "/coverage.csv", {"time", "coverage"}) {
   for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
-    if (scene_.objects[static_cast<std::size_t>(i)].name == context.values.text("of")) object_ = i;
+    if (!context.values.has("of") || scene_.objects[static_cast<std::size_t>(i)].name == context.values.text("of"))
+      objects_.push_back(i);
   reach_.links = context.frames("links");
   reach_.clear = context.frames("clear");
   const Eigen::Vector3d axis = context.values.vector3("pad-axis");
@@ -56,10 +57,12 @@ Coverage::Coverage(const RecorderContext& context)
 
 void Coverage::sample() {
   Reach reach(robot_, scene_, model_, start_q_, reach_);
-  for (const SurfaceSample& sample : sampleSurface(scene_, object_, count_)) {
-    points_.push_back({sample, reach(sample)});
-    reachable_ += points_.back().reachable;
-  }
+  sampled_ = true;
+  for (int object : objects_)
+    for (const SurfaceSample& sample : sampleSurface(scene_, object, count_)) {
+      points_.push_back({sample, reach(sample)});
+      reachable_ += points_.back().reachable;
+    }
 }
 
 double Coverage::covered() const {
@@ -68,7 +71,7 @@ double Coverage::covered() const {
 
 void Coverage::observe(const ObservedTick& tick) {
   const double time = tick.truth.time;
-  if (points_.empty()) sample();
+  if (!sampled_) sample();
   for (; seen_ < touched_.points.size(); ++seen_) {
     const Eigen::Vector3d& touched_W = touched_.points[seen_].point_W;
     for (Point& point : points_) {

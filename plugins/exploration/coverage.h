@@ -9,7 +9,7 @@
 
 namespace tactus::exploration {
 
-/// The recorder `coverage`: how much of what an object shows has been touched.
+/// The recorder `coverage`: how much of an object's surface has been touched.
 ///
 /// Points of its surface are drawn evenly; those that a desired link could touch with its pad count (see Reach).  A point is
 /// covered from the first time that a touched point lies within `radius` of it.  Figures:
@@ -22,7 +22,7 @@ namespace tactus::exploration {
 /// | coverage_half_s  | time at which half of those that can be reached were covered; none before     |
 ///
 /// Files: coverage.csv, `time` (s) and `coverage`, twice a second; surface.csv, the points, with `reachable` 0 or 1 and
-/// `covered_at` (s, −1 for never).  The object is taken where it stands at the start.
+/// `covered_at` (s, −1 for never).  Objects are taken where they stand at the start.
 class Coverage final : public control::Observer {
  public:
   explicit Coverage(const control::RecorderContext& context);
@@ -47,7 +47,9 @@ class Coverage final : public control::Observer {
   description::Scene scene_;
   Eigen::VectorXd start_q_;
   ReachOptions reach_;
-  int object_ = -1, count_;
+  std::vector<int> objects_;                                       ///< of the scene
+  int count_;
+  bool sampled_ = false;
   double radius_;
   std::vector<Point> points_;                                      ///< from the first tick on
   std::size_t seen_ = 0;                                           ///< touched points that were looked at

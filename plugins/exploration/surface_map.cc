@@ -43,11 +43,14 @@ void SurfaceMap::registerIn(Registry& registry) {
        .description = "How far behind a touched point its inside is observed.", .lower = 0, .lower_open = true},
       {.name = "step", .type = ValueType::real, .unit = "m", .default_text = "0.06",
        .description = "How far around what is known places are looked for.", .lower = 0, .lower_open = true},
-      {.name = "within", .type = ValueType::reals, .unit = "m", .required = true,
+      {.name = "within", .type = ValueType::reals, .unit = "m", .default_text = "-9 -9 -9 9 9 9",
        .description = "Lower and upper corner of the box in which places lie, world axes.", .count = 6},
       {.name = "facing", .type = ValueType::reals, .unit = "1", .default_text = "0 0 1",
        .description = "Direction to which the surface must face for the hand to touch it, world axes.", .count = 3,
        .in_world = InWorld::directions},
+      {.name = "first", .type = ValueType::reals, .unit = "1", .default_text = "1 0 0",
+       .description = "Direction across `facing` from which the directions around a point are counted, world axes.",
+       .count = 3, .in_world = InWorld::directions},
       {.name = "facing-angle", .type = ValueType::real, .unit = "rad", .default_text = "1.6",
        .description = "And by how much its outward normal may differ.", .lower = 0, .upper = 3.15},
       {.name = "known", .type = ValueType::real, .unit = "1", .default_text = "0.4",
@@ -82,6 +85,7 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
       progress_(context.values.real("progress")),
       every_(context.values.integer("every")),
       facing_W_(context.values.vector3("facing")),
+      first_W_(context.values.vector3("first")),
       capacity_(context.values.integer("capacity")),
       process_({context.values.real("length"), 1, context.values.real("noise")}, 1, 2 * capacity_) {
   const std::vector<double>& within = context.values.numbers("within");
@@ -92,6 +96,9 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
   }
   if (facing_W_.norm() < 1e-9) throw ElementError("facing", "facing must not be a zero vector");
   facing_W_.normalize();
+  if (first_W_.norm() < 1e-9 || std::abs(first_W_.normalized().dot(facing_W_)) > 1e-6)
+    throw ElementError("first", "first must be perpendicular to facing");
+  first_W_.normalize();
   points_W_.reserve(static_cast<std::size_t>(capacity_));
   normals_W_.reserve(static_cast<std::size_t>(capacity_));
   left_W_.fill(nowhere);
@@ -146,7 +153,8 @@ double SurfaceMap::uncertaintyAt(const Vector3d& p_W) {
 
 bool SurfaceMap::placeAround(int point, int direction, Vector3d& place_W) const {
   const Vector3d& normal = normals_W_[static_cast<std::size_t>(point)];
-  const Vector3d first = normal.cross(std::abs(normal.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY()).normalized();
+  const bool along_first = std::abs(normal.dot(first_W_)) >= 0.9;
+  const Vector3d first = normal.cross(along_first ? Vector3d(facing_W_.cross(first_W_)) : first_W_).normalized();
   const double angle = 2 * std::numbers::pi * direction / directions;
   place_W = points_W_[static_cast<std::size_t>(point)] + step_ * (std::cos(angle) * first + std::sin(angle) * normal.cross(first));
   Vector3d gradient;

@@ -64,7 +64,7 @@ class SurfaceMap final : public control::Signal {
   double spacing_, depth_, step_, facing_cosine_, known_, nearness_, patience_, progress_;
   int every_;
   std::array<Eigen::Vector3d, 2> box_W_;
-  Eigen::Vector3d facing_W_;
+  Eigen::Vector3d facing_W_, first_W_;
   int capacity_;
 
   GaussianProcess process_;

@@ -133,14 +133,12 @@ TEST_F(FollowSurface, RefusesToYieldBackwards) {
   }
 }
 
-TEST_F(FollowSurface, NeedsKeysOrSomebodyWhoNamesPlaces) {
-  try {
-    task = world.make("follow-surface", {{"frame", "palm"}});
-    FAIL();
-  } catch (const control::ElementError& error) {
-    EXPECT_EQ(error.attribute, "along");
-    EXPECT_STREQ(error.what(), "where to: give either along, key positions, or towards, a signal's place");
-  }
+TEST_F(FollowSurface, WithoutKeysItStaysOnTheSurfaceWhereItIs) {
+  task = world.make("follow-surface", {{"frame", "palm"}, {"normal-filter", "0"}});
+  rows = world.rowsFor(*task);
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+  update();
+  EXPECT_NEAR(rows.force.head<3>().norm(), 0, 1e-9);
 }
 
 TEST_F(FollowSurface, RefusesAxesThatAreNotPerpendicular) {
