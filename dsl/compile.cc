@@ -494,8 +494,11 @@ std::vector<std::unique_ptr<runtime::GuardedObserver>> makeRecorders(const Stack
   PartMaker parts(stack, registry);
   const bool switch_off = controller.options().on_fault == control::OnFault::switch_off;
   std::vector<std::unique_ptr<runtime::GuardedObserver>> recorders;
+  const description::Scene scene = stack.scene(stack.run.seed);
+  const Eigen::VectorXd start_q = stack.start(stack.run.seed);
   for (const ElementInstance& element : stack.run.recorders) {
-    const control::RecorderContext context(parts.contextOf(element, portsOf(stack, controller)), controller, folder);
+    const control::RecorderContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene, start_q,
+                                           folder);
     if (auto made = parts.make(element, [&] { return registry.makeRecorder(context); }))
       recorders.push_back(std::make_unique<runtime::GuardedObserver>(element.name, std::move(*made), switch_off));
   }

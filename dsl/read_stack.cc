@@ -158,8 +158,10 @@ class StackReader {
     stack_.start_q.resize(static_cast<Eigen::Index>(moving.size()));
     for (std::size_t i = 0; i < moving.size(); ++i)
       stack_.start_q[static_cast<Eigen::Index>(i)] = std::clamp(0.0, joint(i).lower, joint(i).upper);
+    stack_.start_jitter.joints = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(moving.size()));
     const CheckedElement* start = element.first("start");
     if (!start || !start->values.has("q")) return;
+    readStartJitter(*start);
     const XmlAttribute& written = *start->xml->attribute("q");
     const auto& q = start->values.numbers("q");
     if (q.size() != moving.size())
@@ -174,6 +176,33 @@ class StackReader {
                                   ": its limits are " + control::formatNumber(joint(i).lower) + " and " +
                                   control::formatNumber(joint(i).upper));
     }
+  }
+
+  void readStartJitter(const CheckedElement& start) {
+    StartJitter& jitter = stack_.start_jitter;
+    const auto& joints = start.values.numbers("jitter");
+    const auto moving = static_cast<std::size_t>(jitter.joints.size());
+    const auto refuse = [&](const char* attribute, const std::string& message) {
+      findings_.errorAtValue(code::wrong_start, *start.xml, *start.xml->attribute(attribute), message);
+    };
+    const auto isNegative = [](double number) { return number < 0; };
+    if (joints.size() == 1)
+      jitter.joints.setConstant(joints[0]);
+    else if (joints.size() == moving)
+      jitter.joints = Eigen::Map<const Eigen::VectorXd>(joints.data(), jitter.joints.size());
+    else
+      return refuse("jitter", "the robot has " + std::to_string(moving) + " moving joints, but jitter gives " +
+                                  std::to_string(joints.size()) + " values; one for all, or one for each");
+    if (std::any_of(joints.begin(), joints.end(), isNegative)) return refuse("jitter", "jitter must not be negative");
+    const auto& pose = start.values.numbers("frame-jitter");
+    if (pose.size() != 6) return;                                  // told already
+    if (std::any_of(pose.begin(), pose.end(), isNegative))
+      return refuse("frame-jitter", "frame-jitter must not be negative");
+    jitter.pose = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(pose.data());
+    if (start.values.has("frame"))
+      jitter.link = stack_.robot.linkIndex(start.values.text("frame"));
+    else if (!jitter.pose.isZero(0))
+      refuse("frame-jitter", "frame-jitter needs a frame: the link that it moves");
   }
 
   void readSelfContact(const CheckedElement& element) {

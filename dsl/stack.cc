@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "framework/control/random.h"
+#include "framework/dynamics/inverse_kinematics.h"
+#include "framework/dynamics/kinematics.h"
 
 namespace tactus::dsl {
 namespace {
@@ -51,6 +53,31 @@ description::Scene Stack::scene(std::uint64_t seed) const {
       if (described.closeness == closeness)
         scene.pairs.insert(scene.pairs.end(), described.pairs.begin(), described.pairs.end());
   return scene;
+}
+
+Eigen::VectorXd Stack::start(std::uint64_t seed) const {
+  Eigen::VectorXd q = start_q;
+  if (seed == 0) return q;
+  control::SplitMix64 random(control::seedOf(seed, "start"));
+  const std::vector<int> moving = robot.movingJoints();
+  if (!start_jitter.joints.isZero(0))
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const description::Joint& joint = robot.joints[static_cast<std::size_t>(moving[static_cast<std::size_t>(i)])];
+      q[i] = std::clamp(q[i] + start_jitter.joints[i] * random.symmetric(), joint.lower, joint.upper);
+    }
+  if (start_jitter.link < 0 || start_jitter.pose.isZero(0)) return q;
+  Eigen::Matrix<double, 6, 1> shift;
+  for (int i = 0; i < 6; ++i) shift[i] = start_jitter.pose[i] * random.symmetric();
+  const dynamics::Model model(robot);
+  dynamics::Workspace workspace(model);
+  dynamics::forwardKinematics(model, q, workspace);
+  const Eigen::Isometry3d X_WL = dynamics::framePose(model, workspace, start_jitter.link);
+  const Eigen::Vector3d turn = shift.tail<3>();
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(turn.norm(), turn.norm() > 0 ? turn.normalized() : Eigen::Vector3d::UnitX())
+                                .toRotationMatrix();
+  return dynamics::inverseKinematics(
+             model, {{start_jitter.link, X_WL.translation() + shift.head<3>(), R * X_WL.linear()}}, q)
+      .q;
 }
 
 }  // namespace tactus::dsl

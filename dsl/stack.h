@@ -40,6 +40,13 @@ struct ObjectDescription {
   std::vector<control::ElementValues> shapes;                      ///< of object.primitives, as read
 };
 
+/// `jitter` of the start: uniform draws from ± these, drawn from the run's seed.
+struct StartJitter {
+  Eigen::VectorXd joints;                                          ///< dof, rad or m
+  int link = -1;                                                   ///< index into Robot::links; -1 = none
+  Eigen::Matrix<double, 6, 1> pose = Eigen::Matrix<double, 6, 1>::Zero();  ///< x y z (m), turns (rad), world axes
+};
+
 /// A <pair> of the scene: what it says, for each two that it names.
 struct PairDescription {
   std::vector<description::ContactPair> pairs;
@@ -83,7 +90,8 @@ struct Stack {
   description::Robot robot;
   std::string robot_model;                                         ///< as written
   std::string robot_file;                                          ///< where it was found
-  Eigen::VectorXd start_q;                                         ///< dof
+  Eigen::VectorXd start_q;                                         ///< dof, without jitter
+  StartJitter start_jitter;
   std::string self_contact = "none";                               ///< as written: which links touch each other
   dynamics::SelfContact self_contacts;                             ///< what comes of it
   std::vector<ObjectDescription> objects;
@@ -109,6 +117,9 @@ struct Stack {
   const ElementInstance* source(std::string_view name) const;
   /// The scene with jitter drawn from the seed; the same seed gives the same scene on every machine.
   description::Scene scene(std::uint64_t seed) const;
+  /// Where the joints start, with jitter drawn from the seed, within their limits.  A link that joints cannot bring to
+  /// where it was drawn starts as near as they bring it.
+  Eigen::VectorXd start(std::uint64_t seed) const;
 };
 
 }  // namespace tactus::dsl

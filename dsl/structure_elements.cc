@@ -107,7 +107,18 @@ ElementRow startRow() {
           .kind = ElementKind::structure,
           .description = "Where the joints are at time 0; not given: 0, or the nearest value inside the limits.",
           .attributes = {{.name = "q", .type = ValueType::reals, .unit = "rad or m", .required = true,
-                          .description = "One value for each moving joint, in the order of the model."}}};
+                          .description = "One value for each moving joint, in the order of the model."},
+                         {.name = "jitter", .type = ValueType::reals, .unit = "rad or m", .default_text = "0",
+                          .description = "Each joint starts off by a uniform draw from ± this, drawn from the seed and "
+                                         "kept within its limits; one number for all joints, or one for each."},
+                         {.name = "frame", .type = ValueType::link,
+                          .description = "The link that `frame-jitter` moves."},
+                         {.name = "frame-jitter", .type = ValueType::reals, .unit = "m and rad",
+                          .default_text = "0 0 0 0 0 0",
+                          .description = "`frame` starts off by a uniform draw from ± this, x y z and turns about the axes "
+                                         "of the world, drawn from the seed; joints near `q` that bring it there as "
+                                         "nearly as they can.",
+                          .count = 6}}};
 }
 
 ElementRow sceneRow() {

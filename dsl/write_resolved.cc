@@ -131,6 +131,16 @@ std::string modelText(const Stack& stack) {
   return stack.robot_model;
 }
 
+std::string startJitterText(const Stack& stack) {
+  const StartJitter& jitter = stack.start_jitter;
+  std::string text;
+  if (!jitter.joints.isZero(0)) text += attributeText("jitter", numbersText(jitter.joints));
+  if (jitter.link >= 0)
+    text += attributeText("frame", stack.robot.links[static_cast<std::size_t>(jitter.link)].name) +
+            attributeText("frame-jitter", numbersText(jitter.pose));
+  return text;
+}
+
 }  // namespace
 
 std::string writeResolved(const Stack& stack) {
@@ -139,7 +149,7 @@ std::string writeResolved(const Stack& stack) {
   const bool touches_itself = stack.self_contact != "none";
   out += "  <robot" + attributeText("model", modelText(stack)) +
          (touches_itself ? attributeText("self-contact", stack.self_contact) : "") + ">\n    <start" +
-         attributeText("q", numbersText(stack.start_q)) + "/>\n  </robot>\n";
+         attributeText("q", numbersText(stack.start_q)) + startJitterText(stack) + "/>\n  </robot>\n";
   out += "  <scene" + attributeText("gravity", numbersText(stack.gravity)) + ">\n";
   for (const ObjectDescription& object : stack.objects) out += objectText(object);
   for (const PairDescription& pair : stack.pairs) out += leaf("    ", pair.values);

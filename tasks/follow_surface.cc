@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/control/displacement.h"
 #include "tasks/orientation_error.h"
@@ -18,9 +19,12 @@ void FollowSurface::registerIn(Registry& registry) {
   row.source = "thesis A.1";
   row.attributes = {
       {.name = "frame", .type = ValueType::link, .required = true, .description = "The link that follows."},
-      {.name = "along", .type = ValueType::points, .unit = "m", .required = true,
-       .description = "Key positions, world axes, in order; they need not lie on the surface.", .count = 3,
+      {.name = "along", .type = ValueType::points, .unit = "m",
+       .description = "Key positions, world axes, in order; they need not lie on the surface. Without them, and without "
+                      "`towards`, the link stays where it is on the surface.", .count = 3,
        .in_world = InWorld::positions, .reached_by = "frame"},
+      {.name = "towards", .type = ValueType::port,
+       .description = "Instead of `along`: the place that a signal names, e.g. map.next.", .port_type = "place"},
       {.name = "on", .type = ValueType::port, .default_text = "touch.held",
        .description = "Contacts whose normals show the surface.", .port_type = "contact-set"},
       {.name = "normal-axis", .type = ValueType::reals, .unit = "1", .default_text = "1 0 0",
@@ -55,6 +59,17 @@ void FollowSurface::registerIn(Registry& registry) {
        .in_world = InWorld::directions},
       {.name = "tilt", .type = ValueType::real, .unit = "rad", .default_text = "0",
        .description = "Lean of the forward axis into the surface.", .lower = -1.5, .upper = 1.5},
+      {.name = "yield-from", .type = ValueType::real, .unit = "N",
+       .description = "The pull towards the key fades while the largest force of `yield-on` is above this; not given: never.",
+       .lower = 0},
+      {.name = "yield-until", .type = ValueType::real, .unit = "N",
+       .description = "Force at which it is gone; not given: one and a half times `yield-from`.", .lower = 0,
+       .lower_open = true},
+      {.name = "yield-filter", .type = ValueType::real, .unit = "s", .default_text = "0.02",
+       .description = "Time constant of the filter on that force.", .lower = 0},
+      {.name = "yield-on", .type = ValueType::port,
+       .description = "Contacts whose forces make it yield, e.g. touch.all; not given: those of `on`.",
+       .port_type = "contact-set"},
       {.name = "normal-filter", .type = ValueType::real, .unit = "s", .default_text = "0.1",
        .description = "Time constant of the filter on the median normal.", .lower = 0},
       {.name = "stall-time", .type = ValueType::real, .unit = "s", .default_text = "2",
@@ -78,10 +93,12 @@ Eigen::Vector3d direction(const BuildContext& context, const std::string& attrib
 FollowSurface::FollowSurface(const BuildContext& context)
     : Task(Relation::equality, 6),
       contacts_(context.port<ContactSet>("on")),
+      yield_contacts_(context.values.has("yield-on") ? context.port<ContactSet>("yield-on") : contacts_),
       frame_(context.frame("frame")),
       reach_(context.values.real("reach")),
       near_(context.values.real("near")),
       key_threshold_(context.values.real("key-threshold")),
+      yield_filter_(context.values.real("yield-filter")),
       normal_filter_(context.values.real("normal-filter")),
       tilt_(context.values.real("tilt")),
       stiffness_(context.values.real("stiffness")),
@@ -96,20 +113,33 @@ FollowSurface::FollowSurface(const BuildContext& context)
       has_heading_(context.values.has("heading")),
       heading_W_(has_heading_ ? direction(context, "heading") : Eigen::Vector3d::Zero()),
       normal_W_(direction(context, "approach")) {
-  const std::vector<double>& along = context.values.numbers("along");
-  for (std::size_t i = 0; i + 2 < along.size(); i += 3) keys_W_.emplace_back(along[i], along[i + 1], along[i + 2]);
-  if (keys_W_.empty()) throw ElementError("along", "along needs at least one key position 'x y z'");
-  key_W_ = reference_W_ = keys_W_.front();
+  if (context.values.has("along") && context.values.has("towards"))
+    throw ElementError("along", "where to: give along, key positions, or towards, a signal's place, not both");
+  if (context.values.has("towards")) {
+    towards_ = &context.port<Place>("towards");
+  } else if (context.values.has("along")) {
+    const std::vector<double>& along = context.values.numbers("along");
+    for (std::size_t i = 0; i + 2 < along.size(); i += 3) keys_W_.emplace_back(along[i], along[i + 1], along[i + 2]);
+    if (keys_W_.empty()) throw ElementError("along", "along needs at least one key position 'x y z'");
+    key_W_ = reference_W_ = keys_W_.front();
+  }
   const Eigen::Vector3d normal_axis = direction(context, "normal-axis");
   const Eigen::Vector3d forward_axis = direction(context, "forward-axis");
   if (std::abs(normal_axis.dot(forward_axis)) > 1e-6) {
     throw ElementError("forward-axis", "forward-axis must be perpendicular to normal-axis");
   }
   R_EH_ << normal_axis, forward_axis, normal_axis.cross(forward_axis);
+  if (context.values.has("yield-from")) {
+    yield_from_ = context.values.real("yield-from");
+    yield_until_ = context.values.has("yield-until") ? context.values.real("yield-until") : 1.5 * yield_from_;
+    if (!(yield_until_ > yield_from_)) throw ElementError("yield-until", "yield-until must be greater than yield-from");
+  }
   if (yaw_stiffness_ > 0 && !has_heading_) throw ElementError("yaw-stiffness", "yaw-stiffness needs a heading");
 }
 
 const Eigen::Vector3d& FollowSurface::key() const {
+  if (towards_) return towards_->position_W;
+  if (keys_W_.empty()) return reference_W_;
   return keys_W_[std::min<std::size_t>(key_index_, keys_W_.size() - 1)];
 }
 
@@ -134,6 +164,15 @@ void FollowSurface::updateNormal(double dt) {
   if (blended.norm() > 1e-6) normal_W_ = blended.normalized();
 }
 
+void FollowSurface::updatePull(double dt) {
+  if (!std::isfinite(yield_from_)) return;
+  double largest = 0;
+  for (const Contact& contact : yield_contacts_.contacts) largest = std::max(largest, contact.force_N);
+  pressed_ += dt / (yield_filter_ + dt) * (largest - pressed_);
+  const double s = std::clamp((pressed_ - yield_from_) / (yield_until_ - yield_from_), 0.0, 1.0);
+  pull_ = 1 - s * s * (3 - 2 * s);
+}
+
 Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) const {
   const Eigen::Vector3d ahead = has_heading_ && yaw_stiffness_ > 0 ? heading_W_ : Eigen::Vector3d(R_WH.col(1));
   Eigen::Vector3d forward = ahead - ahead.dot(normal_W_) * normal_W_;
@@ -150,6 +189,10 @@ Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) co
 }
 
 void FollowSurface::advanceKey(double time, double tangential_distance) {
+  if (towards_) {                                                  // who names the places also says when to go on
+    key_index_ = towards_->number;
+    return;
+  }
   if (key_index_ >= static_cast<int>(keys_W_.size())) return;
   if (!key_started_) {
     key_started_ = true;
@@ -173,6 +216,7 @@ void FollowSurface::advanceKey(double time, double tangential_distance) {
 
 void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   updateNormal(tick.dt);
+  updatePull(tick.dt);
   const Eigen::Isometry3d X_WE = tick.robot.framePose(frame_);
   const Eigen::Vector3d p_W = X_WE.translation();
   const Eigen::Matrix3d R_WH = X_WE.linear() * R_EH_;
@@ -181,9 +225,9 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   // Tangential way to the key; p_r − p by A.1.6.
   Eigen::Vector3d way = key() - p_W;
   way -= way.dot(normal_W_) * normal_W_;
+  if (towards_ ? !towards_->known : keys_W_.empty()) way.setZero();
   distance_ = way.norm();
-  const Eigen::Vector3d x_e = distance_ > near_ ? Eigen::Vector3d(way * (reach_ / distance_))
-                                                : Eigen::Vector3d(way * (reach_ / near_));
+  const Eigen::Vector3d x_e = way * (pull_ * reach_ / std::max(distance_, near_));
   key_W_ = key();
   reference_W_ = p_W + x_e;
   advanceKey(tick.time, distance_);
@@ -208,13 +252,14 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
 
 void FollowSurface::doArchive(Archive& archive) {
   archive("normal", normal_W_);
-  archive.whole("key", key_index_, 0, static_cast<std::int64_t>(keys_W_.size()));
+  archive.whole("key", key_index_, 0, towards_ ? std::numeric_limits<int>::max() : static_cast<int>(keys_W_.size()));
   archive("nearest", nearest_);
   archive("progress-time", progress_time_);
   archive("key-started", key_started_);
   archive("keys-passed", keys_passed_);
   archive("keys-given-up", keys_given_up_);
   archive("key-number", key_number_);
+  archive("pressed", pressed_);
   archive("last-key-time", last_key_time_);
 }
 
@@ -228,6 +273,7 @@ void FollowSurface::columns(std::vector<LogColumn>& columns) const {
   columns.push_back({"key", &key_number_});
   columns.push_back({"keys_passed", &keys_passed_});
   columns.push_back({"keys_given_up", &keys_given_up_});
+  columns.push_back({"pull", &pull_});
 }
 
 void FollowSurface::marks(std::vector<Mark>& marks) const {
@@ -236,6 +282,7 @@ void FollowSurface::marks(std::vector<Mark>& marks) const {
 }
 
 void FollowSurface::metrics(std::vector<Metric>& metrics) const {
+  if (towards_) return;
   metrics.push_back({"keys_passed", keys_passed_});
   metrics.push_back({"keys_given_up", keys_given_up_});
   metrics.push_back({"keys_total", static_cast<double>(keys_W_.size())});

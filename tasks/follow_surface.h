@@ -13,13 +13,15 @@ namespace tactus::tasks {
 /// 2. the wanted orientation: the frame's `normal-axis` on n_m, its `forward-axis` on its own projection onto the
 ///    plane ⟂ n_m (A.1.2, A.1.3), leaned by `tilt` so that the forward end goes into the surface;
 /// 3. the wanted position p_r: towards the key p_f, within the plane ⟂ n_m, a step `reach` ahead, less when nearer
-///    than `near` (A.1.4–A.1.6);
+///    than `near` (A.1.4–A.1.6), and less the more a contact presses: by 1 − 3s² + 2s³, s the largest force, low-passed,
+///    between `yield-from` and `yield-until`.  What is jammed is then not pushed on by the sweep;
 /// 4. the wrench F = K x_e − D ẋ (A.1.7–A.1.11) with no stiffness along the normal, on the frame Jacobian J_e (6 rows,
 ///    linear first, world axes).  K and D stand in the frame of A.1.3, not in the hand's: the two differ by `tilt`,
 ///    and a hand that leans would be lifted or pressed by its own sweep.
 /// Without contact the frame approaches along the last normal at `approach-speed`.
 ///
-/// A key counts as passed when its tangential distance falls below `key-threshold` while in contact.  It is given up
+/// The keys are a list, `along`, or come from a signal, `towards`, which then says when to go on.
+/// A key of the list counts as passed when its tangential distance falls below `key-threshold` while in contact.  It is given up
 /// when `stall-time` goes by without `stall-progress` towards it: a finger caught at an edge must not hold the sweep.
 class FollowSurface final : public control::Task {
  public:
@@ -36,21 +38,27 @@ class FollowSurface final : public control::Task {
   void doUpdate(const control::Tick& tick, control::TickTask& rows) override;
   void doArchive(control::Archive& archive) override;
   void updateNormal(double dt);
+  void updatePull(double dt);
   Eigen::Matrix3d wantedOrientation(const Eigen::Matrix3d& R_WH) const;
   void advanceKey(double time, double tangential_distance);
   const Eigen::Vector3d& key() const;
 
   const control::ContactSet& contacts_;
+  const control::ContactSet& yield_contacts_;
   int frame_;
+  const control::Place* towards_ = nullptr;                        ///< null: the keys
   std::vector<Eigen::Vector3d> keys_W_;
   Eigen::Matrix3d R_EH_;                                           ///< columns: normal axis, forward axis, their cross product
-  double reach_, near_, key_threshold_, normal_filter_, tilt_;
+  double reach_, near_, key_threshold_, yield_filter_, normal_filter_, tilt_;
+  double yield_from_ = description::infinity, yield_until_ = description::infinity;
   double stiffness_, damping_, damping_normal_, turn_stiffness_, yaw_stiffness_, turn_damping_;
   double approach_speed_, stall_time_, stall_progress_;
   bool has_heading_;
   Eigen::Vector3d heading_W_;
 
   Eigen::Vector3d normal_W_;                                       ///< n_m, filtered
+  double pressed_ = 0;                                             ///< N, filtered
+  double pull_ = 1;                                                ///< share of the reach that is left
   int key_index_ = 0;
   double nearest_ = 0;                                             ///< least tangential distance to the key so far, m
   double progress_time_ = 0;                                       ///< s, when it last fell by stall-progress
@@ -58,7 +66,7 @@ class FollowSurface final : public control::Task {
   double keys_passed_ = 0, keys_given_up_ = 0, key_number_ = 0;
   double last_key_time_ = 0;
   double distance_ = 0;
-  Eigen::Vector3d key_W_, reference_W_;                            ///< p_f, p_r of this tick
+  Eigen::Vector3d key_W_ = Eigen::Vector3d::Zero(), reference_W_ = Eigen::Vector3d::Zero();  ///< p_f, p_r of this tick
 };
 
 }  // namespace tactus::tasks

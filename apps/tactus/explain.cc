@@ -140,7 +140,7 @@ void addExplain(CLI::App& program, Context& context) {
       ->type_name("SECONDS")
       ->check(timeOfTick());
   command->add_option("--backend", arguments->stack.back_end, "Back end instead of the stack's")->type_name("BACKEND");
-  command->add_option("--seed", arguments->stack.seed, "Seed of the scene's jitter; the stack's own without it")
+  command->add_option("--seed", arguments->stack.seed, "Seed of the jitter of scene and start; the stack's own without it")
       ->type_name("N")
       ->check(seed());
   command->add_option("--set", arguments->stack.set, "Give a <parameter> of the stack another value")

@@ -9,6 +9,7 @@
 #include "framework/control/element_values.h"
 #include "framework/runtime/faulty_drives.h"
 #include "framework/runtime/feature_truth.h"
+#include "framework/runtime/temporary_folder.h"
 #include "sim/simbody_plant.h"
 
 namespace tactus::app {
@@ -22,7 +23,7 @@ std::unique_ptr<runtime::SensingPlant> makePlant(const dsl::Stack& stack, const 
     options.wrench_links = runtime::wrenchLinks(sensors);
     options.wrong_masses = stack.faults.masses;
     options.shoves = stack.faults.shoves;
-    auto body = std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start_q, options);
+    auto body = std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start(stack.run.seed), options);
     auto driven = std::make_unique<runtime::FaultyDrives>(std::move(body), stack.faults.torques,
                                                           1 / stack.controller.values.real("rate"));
     return std::make_unique<runtime::SensingPlant>(std::move(driven), std::move(sensors));
@@ -227,6 +228,7 @@ std::vector<control::Metric> Session::metrics() const {
     for (const control::NamedTask& named : level.tasks) named.task->metrics(metrics);
   }
   for (const control::NamedSignal& named : controller_->signals()) named.signal->metrics(metrics);
+  for (const auto& recorder : recorders_) recorder->metrics(metrics);
   if (touched_points_) metrics.push_back({"points_touched", static_cast<double>(touched_points_->points.size())});
   for (const SoughtFeature& feature : features_) {
     for (control::Metric& metric : runtime::featureMetrics(feature.name, *feature.estimate, feature.truth_W)) {
@@ -239,7 +241,12 @@ std::vector<control::Metric> Session::metrics() const {
 
 std::vector<std::string> Session::metricNames() const {
   std::vector<std::string> names;
-  for (const control::Metric& metric : metrics()) names.push_back(metric.name);
+  std::vector<control::Metric> known = metrics();
+  if (recorders_.empty() && !stack_.run.recorders.empty()) {
+    const runtime::TemporaryFolder folder;
+    for (const auto& recorder : dsl::makeRecorders(stack_, registry_, *controller_, folder.path)) recorder->metrics(known);
+  }
+  for (const control::Metric& metric : known) names.push_back(metric.name);
   for (const SoughtFeature& feature : features_) {
     if (!feature.truth_W) continue;
     control::FeatureEstimate found = *feature.estimate;

@@ -67,7 +67,7 @@ void StackArguments::declare(CLI::App& command) {
   command.add_option("--duration", stack.duration, "Simulated time; the stack's own without it")
       ->type_name("SECONDS")
       ->check(simulatedTime());
-  command.add_option("--seed", stack.seed, "Seed of the scene's jitter; the stack's own without it")
+  command.add_option("--seed", stack.seed, "Seed of the jitter of scene and start; the stack's own without it")
       ->type_name("N")
       ->check(seed());
   command.add_option("--set", stack.set, "Give a <parameter> of the stack another value")

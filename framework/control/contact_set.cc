@@ -34,4 +34,10 @@ void archive(Archive& archive, FeatureEstimate& estimate) {
   archive("points", estimate.points);
 }
 
+void archive(Archive& archive, Place& place) {
+  archive("known", place.known);
+  archive("number", place.number);
+  archive("position", place.position_W);
+}
+
 }  // namespace tactus::control

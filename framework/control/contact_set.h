@@ -44,6 +44,13 @@ struct FeatureEstimate {
   int points = 0;                                                  ///< touched points that the estimate rests on
 };
 
+/// Where something should go next.
+struct Place {
+  bool known = false;                                              ///< false: nowhere in particular
+  int number = 0;                                                  ///< rises with each new place
+  Eigen::Vector3d position_W = Eigen::Vector3d::Zero();            ///< m
+};
+
 /// A fixed set of links, e.g. those that a contacts signal calls desired.
 struct FrameSet {
   std::vector<int> frames;                                         ///< indices into Model::frames(), rising
@@ -62,6 +69,7 @@ struct TouchedPoints {
 };
 void archive(Archive& archive, TouchedPoints& points);
 void archive(Archive& archive, FeatureEstimate& estimate);
+void archive(Archive& archive, Place& place);
 
 /// The name that a port of this type carries in the element table.
 template <class T>
@@ -76,6 +84,8 @@ template <>
 struct PortType<FeatureEstimate> { static constexpr const char* name = "feature"; };
 template <>
 struct PortType<FrameSet> { static constexpr const char* name = "frame-set"; };
+template <>
+struct PortType<Place> { static constexpr const char* name = "place"; };
 template <>
 struct PortType<double> { static constexpr const char* name = "scalar"; };
 template <>

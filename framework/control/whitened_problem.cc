@@ -22,16 +22,19 @@ void forwardStrip(const Eigen::MatrixXd& L, double* a, Eigen::Index stride) {
 
 }  // namespace
 
-WhitenedProblem::WhitenedProblem(const TickProblem& shape)
-    : dof_(shape.dof),
+WhitenedProblem::WhitenedProblem(const TickProblem& shape, const ObjectiveOptions& objective)
+    : objective_(objective),
+      dof_(shape.dof),
       levels_(shape.levels.size()),
       origins_(shape.rowCapacity()),
       cholesky_(shape.dof),
       columns_(RowMajorMatrix::Zero(shape.dof, (shape.rowCapacity() + whole_strip - 1) / whole_strip * whole_strip)),
       norms_(shape.rowCapacity()),
       forces_(shape.rowCapacity()),
+      bears_(shape.rowCapacity()),
       own_torques_(shape.dof, shape.levels.size()),
       products_(shape.rowCapacity()),
+      borne_torques_(shape.dof, shape.levels.size() + 1),
       from_own_(shape.dof) {}
 
 bool WhitenedProblem::update(const TickProblem& problem) {
@@ -42,6 +45,10 @@ bool WhitenedProblem::update(const TickProblem& problem) {
   own_torques_.setZero();
   for (int j = 0; j < count_; ++j)
     if (forces_[j] != 0) own_torques_.col(origins_[j].level) += forces_[j] * columns_.col(j);
+  borne_torques_.setZero();
+  for (int j = 0; j < count_; ++j)
+    if (bears_[j]) borne_torques_.col(origins_[j].level + 1) += forces_[j] * columns_.col(j);
+  for (int i = 1; i <= levelCount(); ++i) borne_torques_.col(i) += borne_torques_.col(i - 1);
   auto A = columns_.leftCols(count_);
   auto norms = norms_.head(count_);
   auto lengths = products_.head(count_);
@@ -68,6 +75,7 @@ void WhitenedProblem::gather(const TickProblem& problem) {
         for (int row = 0; row < task.rows; ++row, ++count_) {
           origins_[count_] = {static_cast<int>(i), static_cast<int>(t), row};
           forces_[count_] = task.force[row];
+          bears_[count_] = task.contact && task.force[row] > 0;
         }
         columns_.middleCols(count_ - task.rows, task.rows) = task.J().transpose();
       }
@@ -99,8 +107,10 @@ void WhitenedProblem::toTorque(const Eigen::VectorXd& y, Eigen::VectorXd& torque
 
 // Calls f(j, asked, reached) for each row that the level asks something of: what it asks for in the row's own units, and
 // the unit row's product with y.  Of a task that asks for what its own torque y° does, 0 and the product with y − y°.
+// Balanced, y and y° are without what contacts bear, of this level and those above.
 template <typename F>
-void WhitenedProblem::forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, const F& f) {
+void WhitenedProblem::forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, bool balanced,
+                                       const F& f) {
   for (const Relation relation : {Relation::equality, Relation::inequality}) {
     const bool equality = relation == Relation::equality;
     int first = equality ? levels_[level].first_equality : levels_[level].first_inequality;
@@ -109,6 +119,7 @@ void WhitenedProblem::forEachObjective(const TickProblem& problem, int level, co
       auto reached = products_.head(task.rows);
       from_own_ = y;
       if (!task.has_acceleration) from_own_ -= own_torques_.col(level);
+      if (balanced) from_own_ -= borne_torques_.col(task.has_acceleration ? level + 1 : level);
       reached.noalias() = from_own_.transpose() * columns_.middleCols(first, task.rows);
       for (int row = 0; row < task.rows; ++row)
         if (equality || forces_[first + row] != 0)
@@ -123,9 +134,10 @@ int WhitenedProblem::gatherObjective(const TickProblem& problem, int level, cons
   const LevelRows& rows = levels_[level];
   columns.leftCols(rows.equalities) = equalities(level);
   int count = 0;
-  forEachObjective(problem, level, y, [&](int j, double asked, double reached) {
+  const bool by_inertia = objective_.metric == RowMetric::inertia;
+  forEachObjective(problem, level, y, balanced(), [&](int j, double asked, double reached) {
     if (count >= rows.equalities) columns.col(count) = columns_.col(j);
-    weights[count] = norms_[j] > 0 ? norms_[j] : 1;
+    weights[count] = by_inertia || !(norms_[j] > 0) ? 1 : norms_[j];
     b[count++] = (norms_[j] > 0 ? asked / norms_[j] : 0) - reached;
   });
   return count;
@@ -134,7 +146,7 @@ int WhitenedProblem::gatherObjective(const TickProblem& problem, int level, cons
 void WhitenedProblem::objectiveLeft(const TickProblem& problem, int level, const Eigen::VectorXd& y,
                                     Eigen::VectorXd& b) {
   int count = 0;
-  forEachObjective(problem, level, y, [&](int j, double asked, double reached) {
+  forEachObjective(problem, level, y, balanced(), [&](int j, double asked, double reached) {
     b[count++] = (norms_[j] > 0 ? asked / norms_[j] : 0) - reached;
   });
 }
@@ -142,7 +154,7 @@ void WhitenedProblem::objectiveLeft(const TickProblem& problem, int level, const
 void WhitenedProblem::reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution) {
   for (int i = 0; i < levelCount(); ++i) {
     double sum = 0;
-    forEachObjective(problem, i, y, [&](int j, double asked, double reached) {
+    forEachObjective(problem, i, y, false, [&](int j, double asked, double reached) {
       const double r = norms_[j] * reached - asked;
       sum += r * r;
     });

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/control/objective_options.h"
 #include "framework/control/tick_problem.h"
 #include "framework/control/tick_solution.h"
 
@@ -19,7 +20,7 @@ using ConstColumnsRef = Eigen::Ref<const RowMajorMatrix, 0, Eigen::OuterStride<>
 /// whose units differ by 1e6 weigh the same in every rank decision.  Takes no memory after construction.
 class WhitenedProblem {
  public:
-  explicit WhitenedProblem(const TickProblem& shape);
+  explicit WhitenedProblem(const TickProblem& shape, const ObjectiveOptions& objective = {});
 
   /// False when the mass matrix is not positive definite or a row or force is not finite.
   bool update(const TickProblem& problem);
@@ -54,8 +55,9 @@ class WhitenedProblem {
   /// rows with F ≠ 0; a = J M⁻¹ τ°, or the acceleration that a task asks for.
   void reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution);
   /// What level i asks for, J_i y = a_i in unit rows, with J_i and a_i as above: writes the rows to `columns` (dof ×
-  /// capacity), a_i − J_i y to `b` and the rows' norms, which bring both back to the level's own units, to `weights`;
-  /// returns their number.  The level's equality rows come first.
+  /// capacity), a_i − J_i y to `b` and to `weights` what the metric weighs their errors by: in `identity` the rows' norms,
+  /// which bring both back to the level's own units; returns their number.  The level's equality rows come first.  With
+  /// balanced contacts y and a_i are without their torque.
   int gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, RowMajorMatrix& columns,
                       Eigen::VectorXd& b, Eigen::VectorXd& weights);
   /// `b` alone.
@@ -70,9 +72,11 @@ class WhitenedProblem {
   };
   void gather(const TickProblem& problem);
   void whiten();
+  bool balanced() const { return objective_.contacts == ContactForces::balanced; }
   template <typename F>
-  void forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, const F& f);
+  void forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, bool balanced, const F& f);
 
+  ObjectiveOptions objective_;
   int dof_;
   int count_ = 0;                                                  // rows of this tick
   int first_inequality_ = 0;
@@ -83,8 +87,10 @@ class WhitenedProblem {
   RowMajorMatrix columns_;                                         // dof × row capacity, and room for a strip
   Eigen::VectorXd norms_;
   Eigen::VectorXd forces_;
+  std::vector<char> bears_;                                        // rows of contacts with F > 0
   Eigen::MatrixXd own_torques_;                                    // dof × levels
   Eigen::RowVectorXd products_;
+  Eigen::MatrixXd borne_torques_;                                  // of contacts with F > 0 above level i, dof × (levels + 1)
   Eigen::VectorXd from_own_;
 };
 

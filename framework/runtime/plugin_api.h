@@ -10,7 +10,7 @@
 namespace tactus::runtime {
 
 inline constexpr std::uint64_t plugin_magic = 0x7461637475730001;  // "tactus", descriptor 1
-inline constexpr std::uint32_t plugin_abi = 7;
+inline constexpr std::uint32_t plugin_abi = 8;
 inline constexpr const char* plugin_entry_symbol = "tactus_plugin";
 
 struct PluginDescriptor {

@@ -10,6 +10,7 @@ namespace tactus::hqp {
 
 struct HqpOptions {
   control::RankOptions rank = control::dividing_rank;
+  control::ObjectiveOptions objective = {};
 };
 
 /// Strict hierarchical quadratic programme (Escande, Mansard, Wieber 2014): level by level from the top,
@@ -17,7 +18,7 @@ struct HqpOptions {
 ///   min ‖J_i M⁻¹ τ − a_i‖², and of its optima τ⁽ⁱ⁾ the one with the least τᵀM⁻¹τ,
 ///
 /// J_i the level's equality rows and its inequality rows with F ≠ 0, a_i = J_i M⁻¹ τ°_i or the acceleration that a task
-/// asks for.  From then on E_i M⁻¹ τ = E_i M⁻¹ τ⁽ⁱ⁾ for its equality rows, I_i M⁻¹ τ ≤ I_i M⁻¹ τ⁽ⁱ⁾ for its inequality
+/// asks for, errors and contacts as `objective` takes them.  From then on E_i M⁻¹ τ = E_i M⁻¹ τ⁽ⁱ⁾ for its equality rows, I_i M⁻¹ τ ≤ I_i M⁻¹ τ⁽ⁱ⁾ for its inequality
 /// rows.  Torque limits stand at the level of their priority, above all levels when they have none: from there on no
 /// level leaves them; where the levels above already did, the least violation (in squares) is kept and the tick is
 /// infeasible.  A contact's force_max and its friction cone bound its reference: no level below can change its rows.

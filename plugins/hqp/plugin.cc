@@ -10,6 +10,7 @@ using control::ValueType;
 std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
   HqpOptions options;
   options.rank = {values.real("rank-tolerance"), values.real("fade")};
+  options.objective = control::objectiveOptions(values);
   if (options.rank.fade < options.rank.rank_tolerance)
     throw control::ElementError("fade", "fade must not be below rank-tolerance");
   return std::make_unique<Hqp>(options);
@@ -36,6 +37,7 @@ void registerElements(control::Registry& registry) {
            "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance.",
        .lower = 0, .upper = 1, .lower_open = true},
   };
+  for (control::AttributeRow& attribute : control::objectiveAttributes()) row.attributes.push_back(std::move(attribute));
   registry.addBackEnd(std::move(row), make);
 }
 

@@ -26,7 +26,7 @@ bool exceedsItsBounds(const TickTask& task) {
 Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
     : dof_(shape.dof),
       ranks_(shape, options.rank),
-      whitened_(shape),
+      whitened_(shape, options.objective),
       bounded_(shape),
       chain_(shape.dof, shape.rowCapacity() + shape.dof, 2 * static_cast<int>(shape.levels.size()) + 2, options.rank),
       rows_(shape.dof, shape.rowCapacity() + shape.dof),

@@ -17,7 +17,7 @@ using control::TickSolution;
 
 struct NullSpace::Workspace {
   Workspace(const TickProblem& shape, const NullSpaceOptions& options)
-      : problem(shape),
+      : problem(shape, options.objective),
         chain(shape.dof, shape.rowCapacity(), static_cast<int>(shape.levels.size()) + 1, options.rank),
         single(shape.dof, shape.rowCapacity(), 2, options.rank),
         projection(shape.dof, shape.rowCapacity(), options.inequalities, options.rank, options.release_rows),

@@ -19,6 +19,7 @@ struct NullSpaceOptions {
   Cascade cascade = Cascade::augmented;
   Inequalities inequalities = Inequalities::exact;
   control::RankOptions rank = {};                                  ///< `consistent` divides by σ: give it a larger fade
+  control::ObjectiveOptions objective = {};                        ///< of `consistent`
   /// Off, rows once held are never let go: a wrong projection, for the tests that must notice it.
   bool release_rows = true;
 };

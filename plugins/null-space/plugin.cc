@@ -17,6 +17,7 @@ std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
   if (options.cascade == Cascade::consistent) options.rank = control::dividing_rank;
   if (values.has("rank-tolerance")) options.rank.rank_tolerance = values.real("rank-tolerance");
   if (values.has("fade")) options.rank.fade = values.real("fade");
+  options.objective = control::objectiveOptions(values);
   if (options.rank.fade < options.rank.rank_tolerance)
     throw control::ElementError("fade", "fade must not be below rank-tolerance");
   return std::make_unique<NullSpace>(options);
@@ -58,6 +59,10 @@ void registerElements(control::Registry& registry) {
            withoutIt(&control::RankOptions::fade) + ", which divides by singular values.",
        .lower = 0, .upper = 1, .lower_open = true},
   };
+  for (control::AttributeRow& attribute : control::objectiveAttributes()) {
+    attribute.description = "Where the projection is consistent. " + attribute.description;
+    row.attributes.push_back(std::move(attribute));
+  }
   registry.addBackEnd(std::move(row), make);
 }
 

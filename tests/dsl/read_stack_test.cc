@@ -8,6 +8,7 @@
 
 #include <filesystem>
 
+#include "framework/dynamics/kinematics.h"
 #include "framework/geometry/primitives.h"
 #include "tests/dsl/test_elements.h"
 
@@ -50,6 +51,12 @@ TEST(ReadStack, TheMainExampleIsValid) {
                        .kind = control::ElementKind::back_end,
                        .description = "Stands in for the plugin's.",
                        .attributes = {{.name = "metric", .type = control::ValueType::text}}},
+                      [](const control::ElementValues&) { return nullptr; });
+  registry.addBackEnd({.name = "hqp",
+                       .kind = control::ElementKind::back_end,
+                       .description = "Stands in for the plugin's.",
+                       .attributes = {{.name = "metric", .type = control::ValueType::text},
+                                      {.name = "contact-forces", .type = control::ValueType::text}}},
                       [](const control::ElementValues&) { return nullptr; });
   std::vector<dsl::Diagnostic> warnings;
   const std::string file = std::string(TACTUS_SOURCE_DIR) + "/examples/explore_table/stack.xml";
@@ -188,6 +195,68 @@ TEST(ReadStack, AStartThatIsNotGivenIsZeroOrTheNearestLimit) {
   EXPECT_EQ(stack.start_q[0], 0);
   EXPECT_EQ(stack.start_q[12], 0.263);
   EXPECT_EQ(stack.name, "stack");  // the file's
+}
+
+dsl::Stack startingAt(const std::string& attributes) {
+  return read("<stack format=\"1\"><robot model=\"lwr_4plus\"><start q=\"0 0.5 0 -1.2 0 0.6 0\" " + attributes + "/></robot>" +
+              level + "<controller backend=\"all\"/></stack>");
+}
+
+TEST(ReadStack, AStartIsDrawnFromTheSeedAndStaysWithinJitterAndLimits) {
+  const dsl::Stack still = startingAt("");
+  EXPECT_EQ(still.start(3), still.start_q) << "without jitter";
+  const dsl::Stack stack = startingAt("jitter=\"0.1 0 0.2 0 0 0 9\"");
+  EXPECT_EQ(stack.start(0), stack.start_q) << "seed 0 draws none";
+  EXPECT_EQ(stack.start(5), stack.start(5));
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(7);
+  for (std::uint64_t seed = 1; seed <= 200; ++seed)
+    most = most.cwiseMax((stack.start(seed) - stack.start_q).cwiseAbs());
+  EXPECT_GT(most[0], 0.09);
+  EXPECT_LE(most[0], 0.1);
+  EXPECT_GT(most[2], 0.18);
+  EXPECT_EQ(most[1], 0);
+  const auto moving = stack.robot.movingJoints();
+  EXPECT_LE(most[6], stack.robot.joints[static_cast<std::size_t>(moving[6])].upper) << "kept within limits";
+}
+
+TEST(ReadStack, AFrameStartsOffItsPlaceByWhatTheSeedDraws) {
+  const dsl::Stack stack = startingAt("frame=\"lwr_6\" frame-jitter=\"0.03 0.02 0.01 0 0 0.1\"");
+  const dynamics::Model model(stack.robot);
+  dynamics::Workspace workspace(model);
+  const int link = stack.robot.linkIndex("lwr_6");
+  const auto pose = [&](const Eigen::VectorXd& q) {
+    dynamics::forwardKinematics(model, q, workspace);
+    return dynamics::framePose(model, workspace, link);
+  };
+  const Eigen::Isometry3d from = pose(stack.start_q);
+  Eigen::Vector3d most = Eigen::Vector3d::Zero();
+  double most_turn = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Eigen::Isometry3d there = pose(stack.start(seed));
+    most = most.cwiseMax((there.translation() - from.translation()).cwiseAbs());
+    const Eigen::AngleAxisd turn(there.linear() * from.linear().transpose());
+    if (std::abs(turn.angle()) > 1e-6) EXPECT_NEAR(std::abs(turn.axis().z()), 1, 1e-4) << "about the vertical alone";
+    most_turn = std::max(most_turn, std::abs(turn.angle()));
+  }
+  EXPECT_TRUE((most.array() <= Eigen::Array3d(0.03, 0.02, 0.01) + 1e-6).all()) << most.transpose();
+  EXPECT_TRUE((most.array() >= 0.9 * Eigen::Array3d(0.03, 0.02, 0.01)).all()) << most.transpose();
+  EXPECT_NEAR(most_turn, 0.1, 0.01);
+}
+
+TEST(ReadStack, AJitterThatDoesNotFitIsRefused) {
+  const auto messageOf = [](const std::string& attributes) -> std::string {
+    try {
+      startingAt(attributes);
+    } catch (const dsl::InvalidStack& error) {
+      return error.diagnostics.front().message;
+    }
+    return "none";
+  };
+  EXPECT_EQ(messageOf("jitter=\"0.1 0.1\""),
+            "the robot has 7 moving joints, but jitter gives 2 values; one for all, or one for each");
+  EXPECT_EQ(messageOf("jitter=\"-0.1\""), "jitter must not be negative");
+  EXPECT_EQ(messageOf("frame=\"lwr_6\" frame-jitter=\"0 0 0 0 0 -1\""), "frame-jitter must not be negative");
+  EXPECT_EQ(messageOf("frame-jitter=\"0 0 0.1 0 0 0\""), "frame-jitter needs a frame: the link that it moves");
 }
 
 TEST(ReadStack, TheCommandLineReplacesTheBackEnd) {

@@ -24,7 +24,8 @@ const std::string everything = R"(<stack format="1" name="whole">
   <defaults class="stiff"><object stiffness="500"/></defaults>
   <defaults class="rough" base="stiff"><object friction="0.7"/></defaults>
   <plugin name="known"/>
-  <robot model="lwr_4plus" self-contact="lwr_6 lwr_2"><start q="0.1 0.2 0.3 0.4 0.5 0.6 0.7"/></robot>
+  <robot model="lwr_4plus" self-contact="lwr_6 lwr_2"><start q="0.1 0.2 0.3 0.4 0.5 0.6 0.7" jitter="0.01"
+    frame="lwr_6" frame-jitter="0.01 0.02 0 0 0 0.1"/></robot>
   <scene gravity="0 0 -9">
     <object name="table" pose="1 2 3" jitter="0.01 0 0" stiffness="1000" dissipation="3" friction="0.3" rolling="0.0021">
       <box size="1 1 0.1" pose="0 0 0.25"/></object>
@@ -84,6 +85,9 @@ const std::vector<Change> changes{
     {"robot/model", "lwr_4plus", "allegro_right"},
     {"robot/self-contact", "lwr_6 lwr_2", "lwr_6 lwr_1"},
     {"start/q", "0.1 0.2", "0.15 0.2"},
+    {"start/jitter", "jitter=\"0.01\"", "jitter=\"0.02\""},
+    {"start/frame", "frame=\"lwr_6\"", "frame=\"lwr_5\""},
+    {"start/frame-jitter", "0.01 0.02 0 0 0 0.1", "0.01 0.03 0 0 0 0.1"},
     {"scene/gravity", "0 0 -9", "0 0 -8"},
     {"object/name", "object name=\"table\"", "object name=\"desk\""},
     {"object/class", "on=\"table\" class=\"rough\"", "on=\"table\" class=\"stiff\""},
@@ -219,7 +223,7 @@ void writeShares(control::Activation activation, std::ostream& out) {
 }
 
 void write(const dsl::Stack& stack, std::ostream& out) {
-  out << stack.name << "\n" << stack.robot.name << " " << stack.robot.links.size() << "\n" << stack.start_q.transpose();
+  out << stack.name << "\n" << stack.robot.name << " " << stack.robot.links.size() << "\n" << stack.start(stack.run.seed).transpose();
   for (const std::string& plugin : stack.plugins) out << "\nplugin " << plugin;
   const description::Scene scene = stack.scene(stack.run.seed);
   for (const description::Object& object : scene.objects) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "framework/control/objective_options.h"
 #include "tasks/register_tasks.h"
 
 namespace tactus::dsl_test {
@@ -79,16 +80,20 @@ ElementRow pullRow(const std::string& name) {
                      {.name = "friction", .type = ValueType::real, .default_text = "0.2", .lower = 0}}};
 }
 
-void addBackEnd(Registry& registry, const std::string& name, Abilities abilities) {
+void addBackEnd(Registry& registry, const std::string& name, Abilities abilities,
+                std::vector<control::AttributeRow> more = {}) {
+  std::vector<control::AttributeRow> attributes = {
+      {.name = "projection",
+       .type = ValueType::choice,
+       .default_text = "augmented",
+       .choices = {"successive", "augmented"}},
+      {.name = "tolerance", .type = ValueType::real, .default_text = "1e-8", .lower = 0}};
+  attributes.insert(attributes.end(), more.begin(), more.end());
   registry.addBackEnd(
       {.name = name,
        .kind = ElementKind::back_end,
        .description = "A back end of the tests.",
-       .attributes = {{.name = "projection",
-                       .type = ValueType::choice,
-                       .default_text = "augmented",
-                       .choices = {"successive", "augmented"}},
-                      {.name = "tolerance", .type = ValueType::real, .default_text = "1e-8", .lower = 0}}},
+       .attributes = attributes},
       [abilities](const ElementValues& values) {
         if (values.real("tolerance") > 1) throw ElementError("tolerance", "that is no tolerance");
         return std::make_unique<NoTorque>(abilities);
@@ -115,7 +120,7 @@ Registry makeRegistry() {
   registry.addTask(pullRow("test.press"), [](const BuildContext& context) {
     return std::make_unique<Pull>(context, Relation::equality, true);
   });
-  addBackEnd(registry, "null-space", {.strict_levels = true, .inequalities = true});
+  addBackEnd(registry, "null-space", {.strict_levels = true, .inequalities = true}, control::objectiveAttributes());
   addBackEnd(registry, "all", {true, true, true, true, true});
   addBackEnd(registry, "none", {});
   addBackEnd(registry, "first", {.strict_first_level = true, .why_not_strict = "it is only strict at the top"});

@@ -231,22 +231,25 @@ TEST(Hqp, Law6TheOrderOfTasksChangesNothing) {
 
 // With w_f as the top weight and w_r a ratio below the last one.  Rows of unit length: a level that cannot be reached
 // is then the same compromise for both.
-TEST(Hqp, Law5TheAccelerationProgrammeApproachesIt) {
+void lawFive(bool contacts_press, const HqpOptions& options_of_hierarchy, std::size_t problems) {
   ProblemSource source(47);
   std::vector<double> differences[2];
   int held = 0;
-  while (differences[0].size() < problems_per_law) {
+  while (differences[0].size() < problems) {
     TickProblem problem = source.problem({.min_dof = 12, .max_dof = 20, .min_levels = 2, .max_levels = 3,
                                           .inequality_share = 0, .copy_share = 0, .combination_share = 0,
                                           .max_log10_condition = 1, .max_log10_scale = 0, .common_direction = 0.3,
                                           .max_tasks = 2, .max_rows = 3});
-    // Level 1: contacts at rest.  A contact that presses is a force apart from τ_s in the programme, and part of τ here.
+    // Level 1: contacts.  One that presses is a force apart from τ_s in the programme, and part of τ in the hierarchy.
     problem.levels[0].tasks.clear();
     for (const Relation relation : {Relation::equality, Relation::inequality}) {
       TickTask touch = source.task("touch", problem.dof, {.max_log10_scale = 0, .acceleration_share = 0, .max_rows = 3});
       touch.relation = relation;
       touch.contact = true;
-      touch.force.setZero();
+      if (contacts_press && relation == Relation::equality)
+        touch.force = touch.force.cwiseAbs();
+      else
+        touch.force.setZero();
       problem.levels[0].tasks.push_back(touch);
     }
     for (TickLevel& level : problem.levels)
@@ -256,7 +259,7 @@ TEST(Hqp, Law5TheAccelerationProgrammeApproachesIt) {
         task.jacobian.topRows(task.rows) = unit * L.transpose();
       }
     if (!test::denseRanks(problem, 1e-8, 0.2).clear) continue;
-    const TickSolution strict = solve(problem);
+    const TickSolution strict = solve(problem, options_of_hierarchy);
     held += strict.rows_held;
     const double size = test::inverseMassNorm(problem, strict.torque);
     if (size < 1e-3) continue;                                     // a level that asks for nothing
@@ -283,6 +286,50 @@ TEST(Hqp, Law5TheAccelerationProgrammeApproachesIt) {
             << " from 1e4 to 1e5, " << held << " rows held\n";
   EXPECT_LE(most, 0.02);
   EXPECT_NEAR(sum / differences[0].size(), 1, 0.05);
+}
+
+TEST(Hqp, Law5TheAccelerationProgrammeApproachesIt) { lawFive(false, {}, problems_per_law); }
+
+TEST(Hqp, Law5HoldsForContactsThatPressWhereTheSurfaceBearsThem) {
+  HqpOptions balanced;
+  balanced.objective.contacts = control::ContactForces::balanced;
+  lawFive(true, balanced, problems_per_law / 4);
+}
+
+// Of a level that cannot be met, by brute force: the least Σ e_j² / (J_j M⁻¹ J_jᵀ), where the gradient vanishes.
+TEST(Hqp, TheInertiaMetricWeighsEachRowByTheInertiaThatItMeets) {
+  ProblemSource source(52);
+  HqpOptions by_inertia;
+  by_inertia.objective.metric = control::RowMetric::inertia;
+  double told_apart = 0;
+  for (int k = 0; k < 200; ++k) {
+    TickProblem problem = source.problem({.min_dof = 4, .max_dof = 6, .min_levels = 1, .max_levels = 1,
+                                          .inequality_share = 0, .copy_share = 0, .combination_share = 0,
+                                          .max_log10_condition = 1, .max_log10_scale = 1, .acceleration_share = 1,
+                                          .max_tasks = 3, .max_rows = 3});
+    const TickSolution solution = solve(problem, by_inertia);
+    const Eigen::MatrixXd inverse = problem.mass_matrix.inverse();
+    const auto gradientLeft = [&](const Eigen::VectorXd& torque) {
+      Eigen::VectorXd gradient = Eigen::VectorXd::Zero(problem.dof);
+      double size = 0;
+      for (const TickTask& task : problem.levels[0].tasks)
+        for (int j = 0; j < task.rows; ++j) {
+          const Eigen::VectorXd row = task.jacobian.row(j).transpose();
+          const double mobility = row.dot(inverse * row);
+          if (!(mobility > 0)) continue;
+          const double asked = task.has_acceleration ? task.acceleration[j] : 0;
+          if (!task.has_acceleration) return -1.0;
+          gradient += (row.dot(inverse * torque) - asked) / mobility * (inverse * row);
+          size += std::abs(asked) / mobility * (inverse * row).norm();
+        }
+      return gradient.norm() / (size + 1e-12);
+    };
+    const double left = gradientLeft(solution.torque);
+    if (left < 0) continue;
+    EXPECT_LE(left, 1e-8);
+    told_apart = std::max(told_apart, gradientLeft(solve(problem).torque));
+  }
+  EXPECT_GT(told_apart, 1e-3) << "in some problem the two metrics differ";
 }
 
 TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {

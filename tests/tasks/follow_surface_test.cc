@@ -101,6 +101,46 @@ TEST_F(FollowSurface, PassesKeysInContactAndGivesUpStalledOnes) {
   EXPECT_EQ(column(*task, "keys_passed"), 1) << "a key given up is not passed";
 }
 
+TEST_F(FollowSurface, ItsPullFadesWhereAContactPresses) {
+  make({{"along", "5 -0.1 0.2"}, {"reach", "0.03"}, {"stiffness", "300"}, {"tilt", "0"}, {"yield-from", "0.6"},
+        {"yield-until", "1"}, {"yield-filter", "0"}});
+  const auto pull = [&](double force_N) {
+    world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, force_N)};
+    update();
+    return rows.force.head<3>().norm();
+  };
+  EXPECT_NEAR(pull(0.6), 9, 1e-9);
+  EXPECT_NEAR(pull(0.8), 4.5, 1e-9) << "half way, a smoothstep";
+  EXPECT_NEAR(pull(1.0), 0, 1e-9);
+  EXPECT_NEAR(pull(5.0), 0, 1e-9);
+  EXPECT_NEAR(pull(0.5), 9, 1e-9);
+}
+
+TEST_F(FollowSurface, YieldsToTheForcesThatItIsToldToLookAt) {
+  make({{"along", "5 -0.1 0.2"}, {"yield-from", "0.6"}, {"yield-filter", "0"}, {"yield-on", "touch.all"}});
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5), world.contactOn("palm", {0, 0, -1}, 2)};
+  update();
+  EXPECT_NEAR(rows.force.head<3>().norm(), 0, 1e-9) << "the palm is not desired, but pressed";
+}
+
+TEST_F(FollowSurface, RefusesToYieldBackwards) {
+  try {
+    make({{"yield-from", "1"}, {"yield-until", "0.5"}});
+    FAIL();
+  } catch (const control::ElementError& error) {
+    EXPECT_EQ(error.attribute, "yield-until");
+    EXPECT_STREQ(error.what(), "yield-until must be greater than yield-from");
+  }
+}
+
+TEST_F(FollowSurface, WithoutKeysItStaysOnTheSurfaceWhereItIs) {
+  task = world.make("follow-surface", {{"frame", "palm"}, {"normal-filter", "0"}});
+  rows = world.rowsFor(*task);
+  world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+  update();
+  EXPECT_NEAR(rows.force.head<3>().norm(), 0, 1e-9);
+}
+
 TEST_F(FollowSurface, RefusesAxesThatAreNotPerpendicular) {
   try {
     make({{"forward-axis", "1 0 1"}});
