@@ -120,7 +120,7 @@ runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers
                             const std::atomic<bool>& stop) {
   runtime::LoopResult result;
   try {
-    runtime::writeFile(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
+    writeWhole(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
     writeScene(folder + "/scene.json", session);
     const auto recorder = session.recordInto(folder);
     runtime::ReplayRecorder replay(folder, session.stack().robot, session.scene(), session.tick());

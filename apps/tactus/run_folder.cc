@@ -109,10 +109,14 @@ void writeWhole(const std::string& path, const std::string& text) {
   try {
     runtime::writeFile(fresh, text);
     fs::rename(fresh, path);
-  } catch (...) {
+  } catch (const runtime::FileError& error) {
     std::error_code ignored;
     fs::remove(fresh, ignored);
-    throw;
+    throw runtime::FileError(path, error.reason);
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    fs::remove(fresh, ignored);
+    throw runtime::FileError(path, error.code().message());
   }
 }
 

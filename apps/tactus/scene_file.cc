@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/tactus/run_folder.h"
 #include "apps/tactus/text.h"
 #include "framework/dynamics/kinematics.h"
 #include "framework/geometry/surface.h"
@@ -92,7 +93,7 @@ void writeScene(const std::string& path, const Session& session) {
     objects.push_back(std::move(json));
   }
   const ordered_json scene{{"format", scene_format}, {"robot", robot.name}, {"links", links}, {"objects", objects}};
-  runtime::writeFile(path, jsonText(scene, -1) + "\n");
+  writeWhole(path, jsonText(scene, -1) + "\n");
 }
 
 }  // namespace tactus::app
