@@ -209,7 +209,9 @@ TEST(StudyCommand, AKillLosesAndRepeatsNothing) {
     ASSERT_TRUE(waitForTrials(study.folder.file("killed"), had + 1));
     std::this_thread::sleep_for(std::chrono::milliseconds(7 * kills));
     program.send(SIGKILL);
-    EXPECT_EQ(program.wait().exit_code, 128 + SIGKILL);
+    const int code = program.wait().exit_code;
+    if (code == 0) break;                                          // on a busy machine the rest was done before the kill came
+    EXPECT_EQ(code, 128 + SIGKILL);
     for (const auto& [trial, time] : before) EXPECT_EQ(timesOf(study.folder.file("killed")).at(trial), time) << trial;
     before = timesOf(study.folder.file("killed"));
   }
