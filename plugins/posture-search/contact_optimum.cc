@@ -44,7 +44,6 @@ void ContactOptimum::registerIn(Registry& registry) {
 ContactOptimum::ContactOptimum(const MeasureContext& context)
     : robot_(context.robot), scene_(context.scene), model_(context.model), workspace_(model_),
       period_(context.control_period) {
-  if (context.scene.objects.empty()) throw ElementError("links", "there is nothing in the scene to touch");
   options_.links = context.frames("links");
   options_.joints = context.joints("joints");
   if (options_.links.size() > kMostLinks)
@@ -121,7 +120,7 @@ void ContactOptimum::columns(std::vector<LogColumn>& columns) const {
 void ContactOptimum::metrics(std::vector<Metric>& metrics) const {
   const double none = std::numeric_limits<double>::quiet_NaN();
   if (searched_at_ != ticks_ && ticks_ > 0) {
-    optimum_ = PostureSearch(robot_, model_, options_)(world(), q_);
+    optimum_ = objects_.empty() ? PostureFound{0, q_} : PostureSearch(robot_, model_, options_)(world(), q_);
     searched_at_ = ticks_;
   }
   const bool found = ticks_ > 0 && optimum_.q.size() > 0;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSpacing = 0.002;                                 // m, of the points where a capsule is first looked at
 constexpr double kPositionError = 1e-8;                           // rad (m), of a touch
+constexpr double kGapError = 1e-7;                                // m, of a touch: kPositionError on an arm of metres
 constexpr double kRounding = 1e-9;
 
 /// The least of a function that falls, then rises, between low and high.
@@ -68,7 +69,7 @@ bool FeelingSide::has(const Vector3d& normal_L) const {
 
 PostureSearch::PostureSearch(const description::Robot& robot, const dynamics::Model& model, PostureSearchOptions options)
     : robot_(robot), model_(model), workspace_(model), options_(std::move(options)) {
-  for (const int joint : options_.joints) stages_.push_back({joint, -1, {}});
+  for (const int joint : options_.joints) stages_.push_back({joint, {}});
   for (std::size_t i = 1; i < stages_.size(); ++i)
     for (int link = 0; link < static_cast<int>(robot.links.size()); ++link)
       if (model.supports(stages_[i].joint, link) && !model.supports(stages_[i - 1].joint, link))
@@ -81,24 +82,16 @@ PostureSearch::PostureSearch(const description::Robot& robot, const dynamics::Mo
     const bool solid = !robot.links[static_cast<std::size_t>(link)].shapes.empty();
     if (wanted && !solid) throw std::invalid_argument("link '" + name + "' has no shape that could touch");
     if (wanted && stage == stages_.rend()) throw std::invalid_argument("no joint moves link '" + name + "'");
-    if (stage == stages_.rend() || !solid) continue;
-    stage->moved.push_back(link);
-    if (!wanted) continue;
-    if (stage->touching >= 0)
-      throw std::invalid_argument("links '" + robot.links[static_cast<std::size_t>(stage->touching)].name + "' and '" +
-                                  name + "' are moved by the same joints");
-    stage->touching = link;
+    if (stage != stages_.rend() && solid) stage->moved.push_back(link);
   }
 }
 
 PostureFound PostureSearch::operator()(const geometry::Shape& world, const Eigen::VectorXd& q) {
   world_ = &world;
-  unsigned all = 0;
-  for (std::size_t i = 0; i < stages_.size(); ++i)
-    if (stages_[i].touching >= 0) all |= 1u << i;
-  for (int count = std::popcount(all); count >= 0; --count)
-    for (unsigned wanted = 0; wanted <= all; ++wanted) {
-      if ((wanted & ~all) || std::popcount(wanted) != count) continue;
+  const int links = static_cast<int>(options_.links.size());
+  for (int count = links; count >= 0; --count)
+    for (unsigned wanted = 0; wanted < 1u << links; ++wanted) {
+      if (std::popcount(wanted) != count) continue;
       q_ = q;
       if (visit(0, wanted)) return {count, q_};
     }
@@ -111,25 +104,26 @@ bool PostureSearch::visit(std::size_t index, unsigned wanted) {
   const double lower = model_.lower()[stage.joint], upper = model_.upper()[stage.joint];
   const int steps = std::max(1, static_cast<int>(std::ceil((upper - lower) / options_.step)));
   const auto positionOf = [&](int i) { return lower + (upper - lower) * i / steps; };
-  if (wanted & (1u << index)) {
+  const auto touching = std::find_if(stage.moved.begin(), stage.moved.end(), [&](int link) { return isWanted(link, wanted); });
+  if (touching != stage.moved.end()) {
     for (const double depth : {0.0, 0.5 * options_.give, options_.give})
       for (int i = 0; i < steps; ++i)
-        if (touchesBetween(index, wanted, positionOf(i), positionOf(i + 1), depth)) return true;
+        if (touchesBetween(index, *touching, wanted, positionOf(i), positionOf(i + 1), depth)) return true;
     return false;
   }
   for (int i = 0; i <= steps; ++i) {
     q_[stage.joint] = positionOf(i);
-    if (isClear(stage, -1) && visit(index + 1, wanted)) return true;
+    if (isAllowed(stage, wanted) && visit(index + 1, wanted)) return true;
   }
   return false;
 }
 
-bool PostureSearch::touchesBetween(std::size_t index, unsigned wanted, double low, double high, double depth) {
+bool PostureSearch::touchesBetween(std::size_t index, int link, unsigned wanted, double low, double high, double depth) {
   const Stage& stage = stages_[index];
   const auto isFree = [&](double position) {
     q_[stage.joint] = position;
     dynamics::forwardKinematics(model_, q_, workspace_);
-    return touchOf(stage.touching).gap > -depth;
+    return touchOf(link).gap > -depth;
   };
   const bool free_low = isFree(low);
   if (isFree(high) == free_low) return false;
@@ -137,14 +131,22 @@ bool PostureSearch::touchesBetween(std::size_t index, unsigned wanted, double lo
     const double middle = 0.5 * (low + high);
     (isFree(middle) == free_low ? low : high) = middle;
   }
-  q_[stage.joint] = free_low ? low : high;
-  return isClear(stage, stage.touching) && options_.side.has(touchOf(stage.touching).normal_L) && visit(index + 1, wanted);
+  q_[stage.joint] = 0.5 * (low + high);
+  return isAllowed(stage, wanted) && visit(index + 1, wanted);
 }
 
-bool PostureSearch::isClear(const Stage& stage, int but) {
+bool PostureSearch::isAllowed(const Stage& stage, unsigned wanted) {
   dynamics::forwardKinematics(model_, q_, workspace_);
-  return std::all_of(stage.moved.begin(), stage.moved.end(),
-                     [&](int link) { return link == but || touchOf(link).gap >= -options_.give; });
+  return std::all_of(stage.moved.begin(), stage.moved.end(), [&](int link) {
+    const Touch touch = touchOf(link);
+    if (touch.gap < -options_.give - kGapError) return false;
+    return !isWanted(link, wanted) || (touch.gap <= kGapError && options_.side.has(touch.normal_L));
+  });
+}
+
+bool PostureSearch::isWanted(int link, unsigned wanted) const {
+  const auto at = std::find(options_.links.begin(), options_.links.end(), link);
+  return at != options_.links.end() && (wanted & (1u << (at - options_.links.begin())));
 }
 
 PostureSearch::Touch PostureSearch::touchOf(int link) {

@@ -41,7 +41,8 @@ struct PostureFound {
 /// get there without going through things is not asked.
 class PostureSearch {
  public:
-  /// Robot and model outlive it.  Throws std::invalid_argument when no joint moves a link, or one joint two of them.
+  /// Robot and model outlive it.  Throws std::invalid_argument when no joint moves a link, a link has no shape, or the
+  /// joints are no chain.
   PostureSearch(const description::Robot& robot, const dynamics::Model& model, PostureSearchOptions options);
 
   /// `world` in world coordinates; joints of `q` (dof) that are not searched stay.
@@ -51,18 +52,20 @@ class PostureSearch {
   /// What a joint moves and no later one of the chain.
   struct Stage {
     int joint = -1;
-    int touching = -1;                                             ///< link that should touch, −1 = none
-    std::vector<int> moved;                                        ///< links with shapes, that one too
+    std::vector<int> moved;                                        ///< links with shapes
   };
   struct Touch {
     double gap;                                                    ///< m, below 0 inside
     Eigen::Vector3d normal_L;                                      ///< unit, out of the link
   };
 
+  /// `wanted`: a bit for each of options_.links.
   bool visit(std::size_t stage, unsigned wanted);
-  /// Looks where the link of stage `index` begins to be `depth` deep between two positions of its joint.
-  bool touchesBetween(std::size_t index, unsigned wanted, double low, double high, double depth);
-  bool isClear(const Stage& stage, int but);
+  /// Looks where `link` of stage `index` begins to be `depth` deep between two positions of its joint.
+  bool touchesBetween(std::size_t index, int link, unsigned wanted, double low, double high, double depth);
+  /// In the posture of q_: nothing that the stage moves is deeper than `give`, and what is wanted of it touches.
+  bool isAllowed(const Stage& stage, unsigned wanted);
+  bool isWanted(int link, unsigned wanted) const;
   /// Of a link in the posture of q_.
   Touch touchOf(int link);
 
