@@ -59,8 +59,8 @@ ElementRow faultsRow() {
           .kind = ElementKind::structure,
           .description = "What goes wrong in a run, and when.  A <fault> here strikes what all sensors tell; torques "
                          "go through the faults of torque in this order.",
-          .children = {{"torque-loss"}, {"torque-stuck"}, {"torque-delay"}, {"joint-friction"}, {"wrong-mass"}, {"shove"},
-                       {"fault"}, {"include"}}};
+          .children = {{"torque-loss"}, {"torque-stuck"}, {"torque-delay"}, {"joint-friction"}, {"wrong-mass"},
+                       {"shove"}, {"fault"}, {"include"}}};
 }
 
 ElementRow torqueLossRow() {
@@ -130,8 +130,8 @@ ElementRow shoveRow() {
 }  // namespace
 
 void addFaultElements(control::Registry& registry) {
-  for (ElementRow row : {faultsRow(), torqueLossRow(), torqueStuckRow(), torqueDelayRow(), jointFrictionRow(), wrongMassRow(),
-                         shoveRow()})
+  for (ElementRow row : {faultsRow(), torqueLossRow(), torqueStuckRow(), torqueDelayRow(), jointFrictionRow(),
+                         wrongMassRow(), shoveRow()})
     registry.addStructure(std::move(row));
 }
 

@@ -137,7 +137,7 @@ class FaultReader {
   }
 
   void readMass(const CheckedElement& element) {
-    description::WrongMass fault{.name = element.values.text("name"), .window = windowOf(element),
+    description::WrongMass fault{.name = element.values.text("name"), .window = windowOf(element), .bodies = {},
                                  .factor = element.values.real("factor"), .added = element.values.real("added")};
     if (element.values.has("links")) {
       fault.bodies = movableLinks(element);
@@ -176,7 +176,8 @@ class FaultReader {
                                      .joints = jointsOf(element.values.text("joints")), .torque = {}};
     const std::vector<int> moving = stack_.robot.movingJoints();
     for (const int index : fault.joints) {
-      const description::Joint& joint = stack_.robot.joints[static_cast<std::size_t>(moving[static_cast<std::size_t>(index)])];
+      const int moved = moving[static_cast<std::size_t>(index)];
+      const description::Joint& joint = stack_.robot.joints[static_cast<std::size_t>(moved)];
       if (element.values.has("torque")) {
         fault.torque.push_back(element.values.real("torque"));
         continue;

@@ -110,7 +110,7 @@ struct MeasureContext : BuildContext {
         another_back_end(std::move(another_back_end)) {}
   const Controller& controller;                                    ///< before its first tick; outlives the measure
   const description::Scene& scene;                                 ///< as the run's seed drew it; outlives the measure
-  BackEndMaker another_back_end;                                   ///< like the controller's; makes null where no recipe says how
+  BackEndMaker another_back_end;                                   ///< like the controller's; null without a recipe
 };
 
 /// What the factory of a recorder may look at; ports are those of the controller's signals.
