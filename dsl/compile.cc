@@ -477,9 +477,15 @@ std::vector<runtime::NamedMeasure> makeMeasures(const Stack& stack, const contro
                                                 const control::Controller& controller,
                                                 const description::Scene& scene) {
   PartMaker parts(stack, registry);
+  const auto another_back_end = [&]() -> std::unique_ptr<control::BackEnd> {
+    const control::Recipe& recipe = controller.backEnd().recipe();
+    const control::ElementRow* row = registry.elements().findBackEnd(recipe.back_end);
+    return row ? registry.makeBackEnd(control::makeValues(*row, recipe.options)) : nullptr;
+  };
   std::vector<runtime::NamedMeasure> measures;
   for (const ElementInstance& element : stack.run.measures) {
-    const control::MeasureContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene);
+    const control::MeasureContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene,
+                                          another_back_end);
     if (auto made = parts.make(element, [&] { return registry.makeMeasure(context); }))
       measures.push_back({element.name, std::move(*made)});
   }

@@ -32,10 +32,12 @@ ElementRow faultRow(const std::string& name, const std::string& description, std
   return row;
 }
 
-AttributeRow jointsRow() {
-  return {.name = "joints", .type = ValueType::joints, .default_text = "all",
-          .description = "Whose torque goes wrong.", .choices = {"all"}};
+AttributeRow jointsRow(const std::string& description) {
+  return {.name = "joints", .type = ValueType::joints, .default_text = "all", .description = description,
+          .choices = {"all"}};
 }
+
+AttributeRow torquesOfRow() { return jointsRow("Whose torque goes wrong."); }
 
 AttributeRow linkRow() { return {.name = "link", .type = ValueType::link, .description = "A link that can move."}; }
 
@@ -57,41 +59,56 @@ ElementRow faultsRow() {
           .kind = ElementKind::structure,
           .description = "What goes wrong in a run, and when.  A <fault> here strikes what all sensors tell; torques "
                          "go through the faults of torque in this order.",
-          .children = {{"torque-loss"}, {"torque-stuck"}, {"torque-delay"}, {"wrong-mass"}, {"shove"}, {"fault"},
-                       {"include"}}};
+          .children = {{"torque-loss"}, {"torque-stuck"}, {"torque-delay"}, {"joint-friction"}, {"wrong-mass"},
+                       {"shove"}, {"fault"}, {"include"}}};
 }
 
 ElementRow torqueLossRow() {
   return faultRow("torque-loss", "Drives give less torque than they are asked for, or none.",
-                  {jointsRow(),
+                  {torquesOfRow(),
                    {.name = "factor", .type = ValueType::real, .unit = "1",
                     .default_text = formatNumber(torque_fault.factor),
                     .description = "Of the torque that is left; 0: the drive is dead.", .lower = 0, .upper = 1}});
 }
 
 ElementRow torqueStuckRow() {
-  return faultRow("torque-stuck", "Drives go on with the torque that they gave last.", {jointsRow()});
+  return faultRow("torque-stuck", "Drives go on with the torque that they gave last.", {torquesOfRow()});
 }
 
 ElementRow torqueDelayRow() {
   return faultRow("torque-delay", "Torques reach the joints late.",
-                  {jointsRow(),
+                  {torquesOfRow(),
                    {.name = "delay", .type = ValueType::real, .unit = "s", .required = true,
                     .description = "A whole number of ticks.", .lower = 0, .upper = 1, .lower_open = true}});
 }
 
+ElementRow jointFrictionRow() {
+  ElementRow row = faultRow(
+      "joint-friction", "Joints rub as the controller's model does not know, besides what the robot's file says.",
+      {jointsRow("Which of them."),
+       {.name = "torque", .type = ValueType::real, .unit = "N m or N",
+        .description = "Coulomb friction: what it takes to move the joint.", .lower = 0},
+       {.name = "of-effort", .type = ValueType::real, .unit = "1",
+        .description = "The same, as a part of each joint's effort limit.", .lower = 0, .upper = 1}});
+  row.presence = {{Presence::one_of, {"torque", "of-effort"}}};
+  return row;
+}
+
 ElementRow wrongMassRow() {
   ElementRow row = faultRow(
-      "wrong-mass", "A link or an object weighs other than it is described, and than the controller's model knows.",
+      "wrong-mass", "Links or an object weigh other than they are described, and than the controller's model knows.",
       {linkRow(),
+       {.name = "links", .type = ValueType::links,
+        .description = "Instead: links and groups of links; what cannot move stays as it is.", .choices = {"all"}},
        objectRow(),
        {.name = "factor", .type = ValueType::real, .unit = "1", .default_text = formatNumber(wrong_mass.factor),
         .description = "Of its mass and inertia.", .lower = 0, .lower_open = true},
        {.name = "added", .type = ValueType::real, .unit = "kg", .default_text = formatNumber(wrong_mass.added),
         .description = "A point mass that is fixed to it: a load.", .lower = 0},
        inBody("point", "Where that is, in the frame of the link or object; not given: at the centre of mass.")});
-  row.presence = {{Presence::one_of, {"link", "object"}},
+  row.presence = {{Presence::one_of, {"link", "links", "object"}},
                   {Presence::any_of, {"factor", "added"}},
+                  {Presence::exclusive, {"links", "added"}},
                   {Presence::needs, {"point", "added"}}};
   return row;
 }
@@ -113,7 +130,8 @@ ElementRow shoveRow() {
 }  // namespace
 
 void addFaultElements(control::Registry& registry) {
-  for (ElementRow row : {faultsRow(), torqueLossRow(), torqueStuckRow(), torqueDelayRow(), wrongMassRow(), shoveRow()})
+  for (ElementRow row : {faultsRow(), torqueLossRow(), torqueStuckRow(), torqueDelayRow(), jointFrictionRow(),
+                         wrongMassRow(), shoveRow()})
     registry.addStructure(std::move(row));
 }
 

@@ -26,6 +26,7 @@ class FaultReader {
     if (kind == "torque-stuck") readTorque(element, TorqueFaultKind::stuck);
     if (kind == "torque-delay") readTorque(element, TorqueFaultKind::delay);
     if (kind == "wrong-mass") readMass(element);
+    if (kind == "joint-friction") readFriction(element);
     if (kind == "shove") readShove(element);
   }
 
@@ -136,11 +137,57 @@ class FaultReader {
   }
 
   void readMass(const CheckedElement& element) {
-    const description::Window window = windowOf(element);
-    const std::optional<Body> body = bodyOf(element);
-    if (!body) return;
-    stack_.faults.masses.push_back({element.values.text("name"), window, body->reference, element.values.real("factor"),
-                                    element.values.real("added"), pointOf(element, *body)});
+    description::WrongMass fault{.name = element.values.text("name"), .window = windowOf(element), .bodies = {},
+                                 .factor = element.values.real("factor"), .added = element.values.real("added")};
+    if (element.values.has("links")) {
+      fault.bodies = movableLinks(element);
+      if (fault.bodies.empty()) return;
+    } else {
+      const std::optional<Body> body = bodyOf(element);
+      if (!body) return;
+      fault.bodies = {body->reference};
+      fault.point = pointOf(element, *body);
+    }
+    stack_.faults.masses.push_back(std::move(fault));
+  }
+
+  /// Those of `links` that a joint moves.
+  std::vector<BodyReference> movableLinks(const CheckedElement& element) {
+    std::vector<bool> named(stack_.robot.links.size(), element.values.text("links") == "all");
+    const auto add = [&](const std::string& name) {
+      if (const int link = stack_.robot.linkIndex(name); link >= 0) named[static_cast<std::size_t>(link)] = true;
+    };
+    for (const std::string& word : splitWords(element.values.text("links"))) {
+      add(word);
+      for (const description::Group& group : stack_.robot.link_groups)
+        if (group.name == word) std::for_each(group.members.begin(), group.members.end(), add);
+    }
+    std::vector<BodyReference> bodies;
+    for (std::size_t link = 0; link < named.size(); ++link)
+      if (named[link] && canMove(static_cast<int>(link))) bodies.push_back({.link = static_cast<int>(link)});
+    if (bodies.empty())
+      say(code::immovable_body, element, "links",
+          "none of these links can move: forces and masses change nothing for them");
+    return bodies;
+  }
+
+  void readFriction(const CheckedElement& element) {
+    description::JointFriction fault{.name = element.values.text("name"), .window = windowOf(element),
+                                     .joints = jointsOf(element.values.text("joints")), .torque = {}};
+    const std::vector<int> moving = stack_.robot.movingJoints();
+    for (const int index : fault.joints) {
+      const int moved = moving[static_cast<std::size_t>(index)];
+      const description::Joint& joint = stack_.robot.joints[static_cast<std::size_t>(moved)];
+      if (element.values.has("torque")) {
+        fault.torque.push_back(element.values.real("torque"));
+        continue;
+      }
+      if (!std::isfinite(joint.effort))
+        return say(code::bad_value, element, "of-effort",
+                   "attribute 'of-effort': joint '" + joint.name + "' has no effort limit; give the torque");
+      fault.torque.push_back(element.values.real("of-effort") * joint.effort);
+    }
+    stack_.faults.frictions.push_back(std::move(fault));
   }
 
   void readShove(const CheckedElement& element) {

@@ -12,9 +12,17 @@ JointResistance::JointResistance(const description::Robot& robot, const Eigen::V
     axes_.push_back({.lower = joint.lower,
                      .upper = joint.upper,
                      .damping = joint.damping,
-                     .friction = joint.friction,
+                     .own_friction = joint.friction,
                      .stiffness = 0.05 * inertia[i] / (step * step),
                      .stop_damping = 0.22 * inertia[i] / step});
+  }
+}
+
+void JointResistance::setAddedFriction(const Eigen::VectorXd& friction) {
+  for (int i = 0; i < static_cast<int>(axes_.size()); ++i) {
+    Axis& axis = axes_[i];
+    axis.friction = axis.own_friction + friction[i];
+    if (axis.friction <= 0) axis.bend = axis.next_bend = 0;
   }
 }
 

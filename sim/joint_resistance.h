@@ -15,12 +15,14 @@ namespace tactus::sim {
 ///   k = 0.05 I/h²  (natural frequency 0.22/h, about 900 rad/s at h = 0.25 ms),   d = 0.22 I/h  (ratio ζ = 0.5).
 /// - **Stop**: torque −k x − d q̇ with x the way past the limit, acting only inwards.
 /// - **Coulomb friction**: a bristle z bends with q̇, |k z| ≤ friction; torque −(k z + d q̇), at most `friction`.
-///   Its state advances with `commit`, once per accepted step.
+///   Its state advances with `commit`, once per accepted step.  A fault may add to what the joint itself has.
 class JointResistance {
  public:
   /// `inertia` holds I of every moving joint, in the order of q.
   JointResistance(const description::Robot& robot, const Eigen::VectorXd& inertia, double step);
 
+  /// Coulomb friction of each joint besides its own from now on, N m or N.
+  void setAddedFriction(const Eigen::VectorXd& friction);
   /// Adds the torques at (q, q̇) to `torque`.
   void add(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, Eigen::VectorXd& torque);
   /// Keeps the bristles of the last `add`.
@@ -30,8 +32,9 @@ class JointResistance {
  private:
   struct Axis {
     double lower, upper;
-    double damping, friction;
+    double damping, own_friction;
     double stiffness, stop_damping;
+    double friction = own_friction;                                // with what is added
     double bend = 0, next_bend = 0;                                // rad or m
   };
   std::vector<Axis> axes_;

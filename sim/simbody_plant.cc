@@ -90,6 +90,7 @@ class SimbodyPlant::Implementation {
         qd_(Eigen::VectorXd::Zero(robot_.dof())),
         speed_limits_(speedLimits(robot)),
         resistance_(robot, effectiveInertia(), options.step),
+        added_friction_(Eigen::VectorXd::Zero(robot_.dof())),
         joint_torque_(robot_.dof()),
         mobility_forces_(now_->state.getNU(), 0.0),
         accelerations_(now_->state.getNU(), 0.0),
@@ -99,6 +100,8 @@ class SimbodyPlant::Implementation {
     sensed_.contacts.reserve(contact_.capacity());
     sensed_.wrenches.reserve(options.wrench_links.size());
     for (const description::WrongMass& fault : options_.wrong_masses) records_.push_back({fault.name, "wrong-mass"});
+    for (const description::JointFriction& fault : options_.frictions)
+      records_.push_back({fault.name, "joint-friction"});
     for (const description::Shove& fault : options_.shoves) records_.push_back({fault.name, "shove"});
     pushes_.reserve(options_.shoves.size());
     noteFaults();
@@ -415,8 +418,21 @@ class SimbodyPlant::Implementation {
     size_t record = 0;
     for (const description::WrongMass& fault : options_.wrong_masses)
       records_[record++].note(time(), fault.window.holds(time(), faultRounding()));
+    for (const description::JointFriction& fault : options_.frictions)
+      records_[record++].note(time(), fault.window.holds(time(), faultRounding()));
     for (const description::Shove& fault : options_.shoves)
       records_[record++].note(time(), shareOfStep(fault.window) > 0);
+  }
+
+  /// What faults make joints rub in the step that begins now.
+  void chooseFrictions() {
+    if (options_.frictions.empty()) return;
+    added_friction_.setZero();
+    for (const description::JointFriction& fault : options_.frictions) {
+      if (!fault.window.holds(time(), faultRounding())) continue;
+      for (size_t i = 0; i < fault.joints.size(); ++i) added_friction_[fault.joints[i]] += fault.torque[i];
+    }
+    resistance_.setAddedFriction(added_friction_);
   }
 
   /// The part of the step that begins now which a window covers.
@@ -523,6 +539,7 @@ class SimbodyPlant::Implementation {
   void step(const Eigen::VectorXd& torque, bool last) {
     noteFaults();
     if (chooseMasses()) realize();
+    chooseFrictions();
     joint_torque_ = torque;
     resistance_.add(q_, qd_, joint_torque_);
     toEigen(mobility_forces_).head(robot_.dof()) = joint_torque_;
@@ -656,12 +673,13 @@ class SimbodyPlant::Implementation {
   Eigen::VectorXd q_, qd_;
   Eigen::VectorXd speed_limits_;                                   // rad/s or m/s, beyond which a joint runs away
   JointResistance resistance_;
+  Eigen::VectorXd added_friction_;                                 // N m or N, by faults
   Eigen::VectorXd joint_torque_, last_q_, last_qd_;
   SimTK::Vector mobility_forces_, accelerations_;
   SimTK::Vector_<SimTK::SpatialVec> body_forces_, body_accelerations_;
   std::vector<FreeState> last_free_;
   std::int64_t steps_ = 0, last_steps_ = 0;
-  std::vector<control::FaultRecord> records_;                      // wrong masses, then shoves
+  std::vector<control::FaultRecord> records_;                      // wrong masses, frictions, shoves
   std::vector<BodyWrench> external_;                               // by body: contacts, shoves, holders
   std::vector<LinkPush> pushes_;                                   // shoves of links
   std::vector<BodyAcceleration> changes_;                          // by mobilized body; Ground rests

@@ -24,6 +24,7 @@ struct PlantOptions {
   /// Of links and of objects that forces move; whoever controls the robot does not know.  Velocities stay as they are
   /// when a mass changes.
   std::vector<description::WrongMass> wrong_masses;
+  std::vector<description::JointFriction> frictions;
   /// On links and on objects that forces move, each held over a step; a step that it covers in part feels that part of
   /// it, so that the impulse is right.
   std::vector<description::Shove> shoves;
@@ -50,7 +51,7 @@ class SimbodyPlant final : public runtime::Plant {
   void advance(const Eigen::VectorXd& torque, double duration) override;
   std::span<const control::ObjectMotion> objects() const override;
   void archive(control::Archive& archive) override;
-  /// Wrong masses, then shoves.
+  /// Wrong masses, then frictions, then shoves.
   void faults(std::vector<const control::FaultRecord*>& records) const override;
 
  private:

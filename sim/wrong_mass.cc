@@ -18,13 +18,16 @@ void makeWrong(const description::WrongMass& fault, double& mass, Eigen::Vector3
 }  // namespace
 
 void makeWrong(const description::WrongMass& fault, description::Robot& robot, description::Scene& scene) {
-  if (fault.body.object >= 0) {
-    description::MassProperties& body = scene.objects[static_cast<std::size_t>(fault.body.object)].mass;
-    return makeWrong(fault, body.mass, body.centre, body.inertia);
+  for (const description::BodyReference& body : fault.bodies) {
+    if (body.object >= 0) {
+      description::MassProperties& mass = scene.objects[static_cast<std::size_t>(body.object)].mass;
+      makeWrong(fault, mass.mass, mass.centre, mass.inertia);
+      continue;
+    }
+    description::Link& link = robot.links[static_cast<std::size_t>(body.link)];
+    makeWrong(fault, link.mass, link.centre_of_mass, link.inertia);
+    link.has_inertial = link.has_inertial || link.mass > 0;
   }
-  description::Link& link = robot.links[static_cast<std::size_t>(fault.body.link)];
-  makeWrong(fault, link.mass, link.centre_of_mass, link.inertia);
-  link.has_inertial = link.has_inertial || link.mass > 0;
 }
 
 std::vector<MassPeriod> massPeriods(const std::vector<description::WrongMass>& faults) {

@@ -7,7 +7,7 @@
 
 namespace tactus::sim {
 
-/// Turns mass m, centre of mass c and inertia I (about c) of a link, or of an object that forces move, into
+/// Turns mass m, centre of mass c and inertia I (about c) of links, or of an object that forces move, into
 ///
 ///   m' = f m + a,   c' = (f m c + a p) / m',   I' = f I + (f m a / m') (d² 1 − d dᵀ),   d = p − c
 ///

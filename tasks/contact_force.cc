@@ -57,7 +57,7 @@ ContactForce::ContactForce(const BuildContext& context)
       feedback_(context.values.real("feedback")),
       min_force_(context.values.real("min-force")),
       excess_(context.values.real("feedback-threshold"), context.values.real("feedback-filter"),
-              context.model.frames().size()) {
+              context.model.frames().size(), contacts_) {
   if (context.values.has("force-max")) force_max_ = context.values.real("force-max");
   if (context.values.has("friction")) friction_ = context.values.real("friction");
   if (min_force_ > force_) throw ElementError("min-force", "min-force must not be greater than force");
@@ -74,7 +74,7 @@ void ContactForce::doUpdate(const Tick& tick, TickTask& rows) {
   for (int i = 0; i < count; ++i) {
     const Contact& contact = contacts_.contacts[i];
     const int row = rowsPerContact() * i;
-    const double excess = excess_.measure(contact.frame, contact.force_N, tick.dt);
+    const double excess = excess_.measure(contact, tick.dt);
     tick.robot.directionJacobian(contact.frame, contact.point_W, contact.normal_W, rows.jacobian.row(row));
     rows.force[row] = std::max(force_ - feedback_ * excess, min_force_);
     lowest_reference_ = std::min(lowest_reference_, rows.force[row]);

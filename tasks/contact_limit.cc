@@ -35,7 +35,7 @@ ContactLimit::ContactLimit(const BuildContext& context)
       feedback_(context.values.real("feedback")),
       back_off_limit_(context.values.real("back-off-limit")),
       excess_(context.values.has("max-force") ? context.values.real("max-force") : description::infinity,
-              context.values.real("feedback-filter"), context.model.frames().size()) {}
+              context.values.real("feedback-filter"), context.model.frames().size(), contacts_) {}
 
 void ContactLimit::doUpdate(const Tick& tick, TickTask& rows) {
   excess_.beginTick();
@@ -43,7 +43,7 @@ void ContactLimit::doUpdate(const Tick& tick, TickTask& rows) {
   error_ = 0;
   for (int i = 0; i < rows.rows; ++i) {
     const Contact& contact = contacts_.contacts[i];
-    const double excess = excess_.measure(contact.frame, contact.force_N, tick.dt);
+    const double excess = excess_.measure(contact, tick.dt);
     tick.robot.directionJacobian(contact.frame, contact.point_W, contact.normal_W, rows.jacobian.row(i));
     rows.force[i] = -std::min(feedback_ * excess, back_off_limit_);
     error_ = std::max(error_, contact.force_N);

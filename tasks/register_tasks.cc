@@ -1,5 +1,6 @@
 #include "tasks/register_tasks.h"
 
+#include "tasks/broken_rows.h"
 #include "tasks/contact_force.h"
 #include "tasks/contact_limit.h"
 #include "tasks/contacts.h"
@@ -24,6 +25,7 @@ void registerBuiltIns(control::Registry& registry) {
   Impedance::registerIn(registry);
   Posture::registerIn(registry);
   DynamicalSystem::registerIn(registry);
+  BrokenRows::registerIn(registry);
 }
 
 }  // namespace tactus::tasks

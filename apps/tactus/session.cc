@@ -22,6 +22,7 @@ std::unique_ptr<runtime::SensingPlant> makePlant(const dsl::Stack& stack, const 
     sim::PlantOptions options;
     options.wrench_links = runtime::wrenchLinks(sensors);
     options.wrong_masses = stack.faults.masses;
+    options.frictions = stack.faults.frictions;
     options.shoves = stack.faults.shoves;
     auto body = std::make_unique<sim::SimbodyPlant>(stack.robot, scene, stack.start(stack.run.seed), options);
     auto driven = std::make_unique<runtime::FaultyDrives>(std::move(body), stack.faults.torques,

@@ -8,17 +8,19 @@
 /// What signals hand to tasks: plain data behind typed ports.
 namespace tactus::control {
 
-/// A contact as the controller sees it: one per link.
+/// A contact as the controller sees it: one a link, or up to ContactSet::per_link.
 struct Contact {
   int frame = -1;                                                  ///< index into Model::frames()
   Eigen::Vector3d point_W = Eigen::Vector3d::Zero();               ///< m
   Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();              ///< unit, out of the robot into the object
   double force_N = 0;                                              ///< measured, along the normal
+  int number = 0;                                                  ///< < per_link; the same for as long as it lasts
 };
 
 /// Contacts of this tick; at most `capacity`, in the order of the robot's links.
 struct ContactSet {
   int capacity = 0;
+  int per_link = 1;                                                ///< contacts of one link at most
   std::vector<Contact> contacts;                                   ///< reserved to capacity
 };
 

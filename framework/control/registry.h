@@ -103,10 +103,14 @@ struct SensorContext : BuildContext {
 
 /// What the factory of a measure may look at; ports are those of the controller's signals.
 struct MeasureContext : BuildContext {
-  MeasureContext(BuildContext context, const Controller& controller, const description::Scene& scene)
-      : BuildContext(std::move(context)), controller(controller), scene(scene) {}
+  using BackEndMaker = std::function<std::unique_ptr<BackEnd>()>;
+  MeasureContext(BuildContext context, const Controller& controller, const description::Scene& scene,
+                 BackEndMaker another_back_end = {})
+      : BuildContext(std::move(context)), controller(controller), scene(scene),
+        another_back_end(std::move(another_back_end)) {}
   const Controller& controller;                                    ///< before its first tick; outlives the measure
   const description::Scene& scene;                                 ///< as the run's seed drew it; outlives the measure
+  BackEndMaker another_back_end;                                   ///< like the controller's; null without a recipe
 };
 
 /// What the factory of a recorder may look at; ports are those of the controller's signals.

@@ -40,14 +40,23 @@ struct BodyReference {
   int object = -1;                                                 ///< index into Scene::objects
 };
 
-/// A body weighs other than it is described: `factor` times its mass and inertia, and a point mass `added` at `point`.
+/// Bodies weigh other than they are described: `factor` times their mass and inertia, and a point mass `added` at `point`
+/// of each.
 struct WrongMass {
   std::string name;
   Window window;
-  BodyReference body;
+  std::vector<BodyReference> bodies;
   double factor = 1;                                               ///< > 0
   double added = 0;                                                ///< kg
   Eigen::Vector3d point = Eigen::Vector3d::Zero();                 ///< m, in the body's frame
+};
+
+/// Joints rub: Coulomb friction besides what the robot's description has, which the controller knows nothing of.
+struct JointFriction {
+  std::string name;
+  Window window;
+  std::vector<int> joints;                                         ///< indices into q̇
+  std::vector<double> torque;                                      ///< N m or N, of each of them
 };
 
 /// A force at a point of a body, and a moment on it.
@@ -63,6 +72,7 @@ struct Shove {
 struct Faults {
   std::vector<TorqueFault> torques;                                ///< a torque goes through them in this order
   std::vector<WrongMass> masses;
+  std::vector<JointFriction> frictions;                            ///< those of one joint add up
   std::vector<Shove> shoves;
 };
 

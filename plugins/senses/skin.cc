@@ -93,11 +93,11 @@ Skin::Skin(const SensorContext& context)
     : model_(context.model),
       workspace_(context.model),
       patch_of_(context.robot.links.size(), -1),
+      near_(context.robot.links.size()),
+      self_margin_(context.values.real("self-margin")),
       count_per_N_(1),
       min_taxels_(context.values.integer("min-taxels")),
       min_force_(context.values.real("min-force")),
-      near_(context.robot.links.size()),
-      self_margin_(context.values.real("self-margin")),
       perfect_(context.values.flag("perfect")) {
   const ElementValues& values = context.values;
   const std::vector<int> links = context.frames("links");

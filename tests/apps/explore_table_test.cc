@@ -83,6 +83,37 @@ TEST(ExploreTable, WithoutABumpNoneIsFound) {
   EXPECT_FALSE(estimate.found);
 }
 
+// docs/experiments/ablations.md in small: seeds and seconds are fewer, what is broken and what is not is the same.
+TEST(ExploreTable, AlgorithmThreeBreaksRowsThatTheExactProjectionKeeps) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& projection, const std::string& inequalities) {
+    const Outcome outcome = tactus({"run", kStack, "--seed", "1", "--duration", "8", "--set", "projection=" + projection, "--set",
+                                    "inequalities=" + inequalities, "--out", folder.file(projection + inequalities), "--json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.json()["metrics"];
+  };
+  const nlohmann::json exact = run("augmented", "exact"), one_pass = run("augmented", "one-pass");
+  EXPECT_EQ(exact["broken_share"], 0);
+  EXPECT_EQ(exact["broken_finger-limits_max"], 0);
+  EXPECT_GT(one_pass["broken_share"], 0.2);
+  EXPECT_GT(one_pass["broken_finger-limits_share"], 0.05);
+  EXPECT_GT(one_pass["broken_finger-limits_max"], one_pass["broken_finger-limits_mean"]);
+  EXPECT_LT(one_pass["broken_finger-limits_max"], 0.1) << "N m";
+
+  EXPECT_GT(run("successive", "exact")["broken_finger-limits_share"], 0.2) << "which keeps its first level alone";
+}
+
+TEST(ExploreTable, TroubledByNothingIsTheSame) {
+  const TemporaryFolder folder;
+  const auto metrics = [&](const std::string& stack, const std::string& name) {
+    const Outcome outcome =
+        tactus({"run", stack, "--seed", "2", "--duration", "5", "--out", folder.file(name), "--json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.json()["metrics"];
+  };
+  EXPECT_EQ(metrics(kStack, "plain"), metrics(TACTUS_SOURCE_DIR "/examples/explore_table/troubled.xml", "troubled"));
+}
+
 TEST(ExploreTable, ASingularArmKeepsRunningAndTheLogSaysTheLostRank) {
   // Stretched straight up, the LWR 4+ has lost a direction of its six: the rank in the log is 5 or less at the start.
   const TemporaryFolder folder;

@@ -171,6 +171,28 @@ TEST(BodyFaults, OfAShoveGiveWayAndComeBack) {
   EXPECT_NEAR(finger.at(kEnd, "contact/mean_N"), 0.5, 0.15);
 }
 
+TEST(BodyFaults, OfJointsThatRubKeepAShoveFromMovingThem) {
+  const std::string shove = "<shove name=\"push\" link=\"distal\" force=\"0 0 2\" from=\"1.1\" until=\"1.4\"/>";
+  const Finger slips(shove), rubs(shove + during("<joint-friction torque=\"2\"/>")),
+      little(shove + during("<joint-friction of-effort=\"0.001\"/>"));
+  for (const Finger* finger : {&rubs, &little}) {
+    finger->endsInItsTime();
+    finger->tells("fault", "joint-friction", 1.1, 1.4);
+    EXPECT_NEAR(finger->at(kEnd, "contact/mean_N"), 0.5, 0.3) << "and it is free again";
+  }
+  const auto moved = [](const Finger& finger) { return std::abs(finger.at(kDuring, "q/hip") - finger.at(kBefore, "q/hip")); };
+  EXPECT_GT(moved(slips), 0.02);
+  EXPECT_LT(moved(rubs), 1e-3);
+  EXPECT_GT(moved(little), 0.5 * moved(slips)) << "0.02 N m hardly hold it";
+}
+
+TEST(BodyFaults, OfARobotThatIsLighterLetItsContactsGo) {
+  const Finger finger(during("<wrong-mass links=\"all\" factor=\"0.7\"/>"));
+  finger.endsInItsTime();
+  finger.tells("fault", "wrong-mass", 1.1, 1.4);
+  EXPECT_EQ(finger.at(kDuring, "contact/mean_N"), 0) << "a weight that is not there is borne";
+}
+
 TEST(BodyFaults, OfAShoveThatIsTooMuchEndTheRunByName) {
   const Finger finger("<shove name=\"blast\" link=\"medial\" force=\"0 0 20000\" from=\"1.1\"/>");
   EXPECT_EQ(finger.outcome.exit_code, 5);

@@ -201,7 +201,7 @@ TEST_F(BadState, AsksForWhatCannotBe) {
 
 // A task that the state does not know starts afresh, and is told.
 TEST_F(BadState, OfAnotherStack) {
-  const Outcome outcome = from(changed("\"controller/signal/touch/links/0/on\"", "\"controller/signal/feel/links/0/on\""));
+  const Outcome outcome = from(changed("\"controller/signal/touch/links/0/recent-next\"", "\"controller/signal/feel/links/0/recent-next\""));
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("controller/signal/touch is not in the state, or not all of it"),
                                  HasSubstr("controller/signal/feel of the state is not in this stack")));

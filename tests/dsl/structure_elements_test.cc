@@ -52,6 +52,9 @@ const std::string everything = R"(<stack format="1" name="whole">
     <torque-delay name="late" joints="a4" delay="0.004" from="0.163" until="0.873"/>
     <wrong-mass name="load" link="flange" factor="1.41" added="0.42" point="0 0 0.043" from="0.164" until="0.874"/>
     <wrong-mass name="lead" object="loose" factor="1.43" from="0.166" until="0.876"/>
+    <wrong-mass name="fat" links="lwr_3 lwr_4" factor="1.44"/>
+    <joint-friction name="rust" joints="a1 a2" torque="0.48" from="0.167" until="0.878"/>
+    <joint-friction name="sand" joints="a5" of-effort="0.049"/>
     <shove name="push" object="loose" force="0 0 4.5" moment="0 0 0.46" point="0 0 0.047" from="0.165" until="0.875"/>
     <shove name="kick" link="flange" impulse="0 0 4.8" until="0.877"/>
   </faults>
@@ -164,8 +167,15 @@ const std::vector<Change> changes{
     {"torque-delay/delay", "\"0.004\"", "\"0.006\""},
     {"torque-delay/from", "\"0.163\"", "\"0.263\""},
     {"torque-delay/until", "\"0.873\"", "\"0.973\""},
+    {"joint-friction/name", "rust", "dirt"},
+    {"joint-friction/joints", "a1 a2", "a1"},
+    {"joint-friction/torque", "0.48", "0.58"},
+    {"joint-friction/of-effort", "0.049", "0.059"},
+    {"joint-friction/from", "0.167", "0.267"},
+    {"joint-friction/until", "0.878", "0.978"},
     {"wrong-mass/name", "name=\"load\"", "name=\"weight\""},
     {"wrong-mass/link", "link=\"flange\" factor", "link=\"lwr_6\" factor"},
+    {"wrong-mass/links", "lwr_3 lwr_4", "lwr_3"},
     {"wrong-mass/object", "object=\"loose\" factor", "object=\"table\" factor"},
     {"wrong-mass/factor", "1.41", "1.51"},
     {"wrong-mass/added", "\"0.42\"", "\"0.52\""},
@@ -265,8 +275,12 @@ void write(const description::Faults& faults, std::ostream& out) {
   }
   for (const description::WrongMass& fault : faults.masses) {
     head(fault);
-    out << " " << fault.body.link << " " << fault.body.object << " " << fault.factor << " " << fault.added << " "
-        << fault.point.transpose();
+    out << " " << fault.factor << " " << fault.added << " " << fault.point.transpose();
+    for (const description::BodyReference& body : fault.bodies) out << " " << body.link << " " << body.object;
+  }
+  for (const description::JointFriction& fault : faults.frictions) {
+    head(fault);
+    for (size_t i = 0; i < fault.joints.size(); ++i) out << " " << fault.joints[i] << " " << fault.torque[i];
   }
   for (const description::Shove& fault : faults.shoves) {
     head(fault);

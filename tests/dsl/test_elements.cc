@@ -120,7 +120,10 @@ Registry makeRegistry() {
   registry.addTask(pullRow("test.press"), [](const BuildContext& context) {
     return std::make_unique<Pull>(context, Relation::equality, true);
   });
-  addBackEnd(registry, "null-space", {.strict_levels = true, .inequalities = true}, control::objectiveAttributes());
+  std::vector<control::AttributeRow> of_cascades = control::objectiveAttributes();
+  of_cascades.push_back({.name = "inequalities", .type = ValueType::choice, .default_text = "exact",
+                         .choices = {"one-pass", "exact"}});
+  addBackEnd(registry, "null-space", {.strict_levels = true, .inequalities = true}, of_cascades);
   addBackEnd(registry, "all", {true, true, true, true, true});
   addBackEnd(registry, "none", {});
   addBackEnd(registry, "first", {.strict_first_level = true, .why_not_strict = "it is only strict at the top"});

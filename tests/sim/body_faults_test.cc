@@ -68,7 +68,7 @@ void fall(SimbodyPlant& plant, double seconds, int dof = 2) {
 }
 
 TEST(WrongMass, OfALinkMovesAsOneThatIsBuiltSo) {
-  const WrongMass load{"load", {0, kForever}, {.link = kTool}, 1.5, 0.4, Vector3d(0.1, -0.02, 0.03)};
+  const WrongMass load{"load", {0, kForever}, {{.link = kTool}}, 1.5, 0.4, Vector3d(0.1, -0.02, 0.03)};
   SimbodyPlant told(arm(), {}, Eigen::Vector2d(0.3, -0.5), with({load}));
   // By hand: masses and moments of two bodies about the common centre.
   description::Robot heavy = arm();
@@ -88,7 +88,7 @@ TEST(WrongMass, OfALinkMovesAsOneThatIsBuiltSo) {
 }
 
 TEST(WrongMass, ComesAndGoesWithoutAJumpOfTheState) {
-  const WrongMass load{"load", {0.1, 0.2}, {.link = kElbow}, 1, 2, Vector3d(0.4, 0, 0)};
+  const WrongMass load{"load", {0.1, 0.2}, {{.link = kElbow}}, 1, 2, Vector3d(0.4, 0, 0)};
   SimbodyPlant told(arm(), {}, Eigen::Vector2d(0.3, -0.5), with({load}));
   SimbodyPlant plain(arm(), {}, Eigen::Vector2d(0.3, -0.5));
   const auto step = [&](double until) {
@@ -116,7 +116,7 @@ TEST(WrongMass, ComesAndGoesWithoutAJumpOfTheState) {
 }
 
 TEST(WrongMass, IsFeltByTheWrenchThatBearsIt) {
-  const WrongMass load{"load", {0, kForever}, {.link = kTool}, 1, 0.6};  // at the tool's origin
+  const WrongMass load{"load", {0, kForever}, {{.link = kTool}}, 1, 0.6};  // at the tool's origin
   SimbodyPlant plant(arm(), {}, Eigen::Vector2d(0, 0), with({load}, {}, {kTool}));
   plant.advance(holding() - 9.81 * 0.6 * Eigen::Vector2d(0.8, 0.4), kTick);
   EXPECT_LT(plant.sense().qd.norm(), 1e-6);
@@ -126,21 +126,82 @@ TEST(WrongMass, IsFeltByTheWrenchThatBearsIt) {
 TEST(WrongMass, OfAnObjectChangesWhatAShoveDoesToIt) {
   for (const double factor : {1.0, 2.0}) {
     SimbodyPlant plant({arm()}, ball(), Eigen::Vector2d(0, 0),
-                       with({{"heavy", {0, kForever}, {.object = 0}, factor, 0.1}},
+                       with({{"heavy", {0, kForever}, {{.object = 0}}, factor, 0.1}},
                             {{"kick", {0.02, 0.03}, {.object = 0}, Vector3d(3, 0, 0)}}));
     fall(plant, 0.05);
     EXPECT_NEAR(plant.objects()[0].linear_W.x(), 0.03 / (0.1 * factor + 0.1), 1e-9);
   }
 }
 
+TEST(WrongMass, OfSeveralBodiesIsThatOfEach) {
+  const Eigen::Vector2d start(0.3, -0.5);
+  SimbodyPlant together(arm(), {}, start, with({{"both", {0, kForever}, {{.link = kElbow}, {.link = kTool}}, 1.3}}));
+  SimbodyPlant each(arm(), {}, start, with({{"one", {0, kForever}, {{.link = kElbow}}, 1.3},
+                                            {"other", {0, kForever}, {{.link = kTool}}, 1.3}}));
+  SimbodyPlant plain(arm(), {}, start);
+  for (SimbodyPlant* plant : {&together, &each, &plain}) fall(*plant, 0.3);
+  EXPECT_EQ(together.sense().q, each.sense().q);
+  EXPECT_GT((together.sense().q - plain.sense().q).norm(), 1e-4);
+  std::vector<const control::FaultRecord*> records;
+  together.faults(records);
+  EXPECT_EQ(records.size(), 1u) << "one fault, however many bodies";
+}
+
 TEST(WrongMass, StaysStableWhereAJointLeansAtItsStop) {
   description::Robot robot = arm();
   for (description::Joint& joint : robot.joints) joint.lower = -0.6, joint.upper = 0.4;
   SimbodyPlant plant(robot, {}, Eigen::Vector2d(0, 0),
-                     with({{"light", {0.5, kForever}, {.link = kElbow}, 0.01},
-                           {"tool", {0.5, kForever}, {.link = kTool}, 0.01}}));
+                     with({{"light", {0.5, kForever}, {{.link = kElbow}}, 0.01},
+                           {"tool", {0.5, kForever}, {{.link = kTool}}, 0.01}}));
   fall(plant, 3);
   EXPECT_LT(plant.sense().qd.norm(), 1e-3);
+}
+
+/// One hinge without weight: I q̈ = τ − friction.
+SimbodyPlant hinge(std::vector<description::JointFriction> frictions) {
+  description::Robot robot = sim_tests::world();
+  addJoint(robot, "hinge", JointType::revolute, Vector3d::UnitZ(), 1, 0.01);
+  PlantOptions options;
+  options.frictions = std::move(frictions);
+  return SimbodyPlant(robot, {}, Eigen::VectorXd::Zero(1), options);
+}
+
+void push(SimbodyPlant& plant, double torque, double seconds) {
+  for (int i = 0; i < std::lround(seconds / kTick); ++i) plant.advance(Eigen::VectorXd::Constant(1, torque), kTick);
+}
+
+TEST(JointFriction, HoldsAJointUntilItIsPushedHarder) {
+  SimbodyPlant held = hinge({{"rust", {0, kForever}, {0}, {0.3}}});
+  push(held, 0.29, 0.2);
+  EXPECT_LT(std::abs(held.sense().q[0]), 1e-3);
+  EXPECT_LT(std::abs(held.sense().qd[0]), 1e-3);
+
+  SimbodyPlant rubs = hinge({{"rust", {0, kForever}, {0}, {0.3}}}), free = hinge({});
+  push(rubs, 0.8, 0.2);
+  push(free, 0.5, 0.2);
+  EXPECT_NEAR(rubs.sense().qd[0], free.sense().qd[0], 1e-6 + 0.02 * free.sense().qd[0])
+      << "it slides with what is left, but for the first moments";
+}
+
+TEST(JointFriction, AddsUpAndIsGoneAfterItsTime) {
+  SimbodyPlant plant = hinge({{"rust", {0, 0.1}, {0}, {0.3}}, {"sand", {0.05, 0.1}, {0}, {0.4}}});
+  push(plant, 0.6, 0.05);
+  const double speed = plant.sense().qd[0];
+  EXPECT_GT(speed, 0) << "0.3 N m do not hold it";
+  push(plant, 0.6, 0.05);
+  EXPECT_LT(plant.sense().qd[0], speed) << "0.7 N m do";
+  const double slowed = plant.sense().qd[0];
+  SimbodyPlant free = hinge({});
+  push(free, 0.6, 0.05);
+  push(plant, 0.6, 0.05);
+  EXPECT_NEAR(plant.sense().qd[0] - slowed, free.sense().qd[0], 1e-9);
+
+  std::vector<const control::FaultRecord*> records;
+  plant.faults(records);
+  ASSERT_EQ(records.size(), 2u);
+  EXPECT_EQ(records[1]->kind, "joint-friction");
+  EXPECT_NEAR(records[1]->began, 0.05, 1e-12);
+  EXPECT_NEAR(records[1]->ended, 0.1, 1e-12);
 }
 
 TEST(MassPeriods, BeginWhereverAFaultBeginsOrEnds) {

@@ -61,6 +61,27 @@ TEST(ContactForce, FeedbackBacksOffOnOneSideOnlyAndNoLowerThanItsFloor) {
   EXPECT_DOUBLE_EQ(reference(50), -3);
 }
 
+TEST(ContactForce, EachContactOfALinkHasItsOwnFeedback) {
+  TaskWorld world;
+  const control::ElementValues values =
+      control::makeValues(*world.registry.elements().find("contacts"),
+                          {{"name", "touch"}, {"desired", "fingers"}, {"hold", "0"}, {"per-link", "2"}});
+  world.touch = world.registry.makeSignal(world.context(values));
+  const auto task = world.make("contact-force", {{"on", "touch.held"}, {"feedback", "2"}, {"feedback-threshold", "1"},
+                                                 {"feedback-filter", "0"}});
+  EXPECT_EQ(task->capacity(), 18);
+  control::ContactRecord light = world.contactOn("index_proximal", {0, 0, -1}, 0.4), heavy = light;
+  heavy.force_N = 1.5;
+  heavy.point_W += world.cache.framePose(heavy.link).linear() * Eigen::Vector3d(0, 0, 0.03);
+  world.sensed.contacts = {light, heavy};
+  world.feel();
+  auto rows = world.rowsFor(*task);
+  task->update(world.tick(), rows);
+  ASSERT_EQ(rows.rows, 2);
+  EXPECT_DOUBLE_EQ(rows.force[0], 0.5);
+  EXPECT_DOUBLE_EQ(rows.force[1], 0.5 - 2 * 0.5);
+}
+
 TEST(ContactForce, TheExcessIsFilteredWithItsTimeConstant) {
   TaskWorld world;
   const auto task = world.make("contact-force", {{"on", "touch.held"}, {"feedback", "1"}, {"feedback-filter", "0.01"}});

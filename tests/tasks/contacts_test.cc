@@ -54,6 +54,68 @@ TEST_F(ContactsSignal, OneContactALinkIsTheForceWeightedMean) {
   EXPECT_LT((contact.normal_W - expected).norm(), 1e-12);
 }
 
+/// Records of one link at these places along it.
+std::vector<control::ContactRecord> along(TaskWorld& world, const std::vector<std::pair<double, double>>& at_and_force) {
+  std::vector<control::ContactRecord> records;
+  for (const auto& [at, force] : at_and_force) {
+    control::ContactRecord record = world.contactOn("index_proximal", kDown, force);
+    record.point_W = world.cache.framePose(record.link) * Eigen::Vector3d(0, 0, at);
+    records.push_back(record);
+  }
+  return records;
+}
+
+TEST_F(ContactsSignal, SeveralContactsALinkAreThoseThatAreApart) {
+  makeTouch({{"desired", "fingers"}, {"hold", "0"}, {"per-link", "3"}, {"apart", "0.01"}});
+  world.sensed.contacts = along(world, {{0, 1}, {0.004, 3}, {0.03, 0.5}});
+  step();
+  const ContactSet& held = port<ContactSet>(world, "held");
+  ASSERT_EQ(held.contacts.size(), 2u);
+  EXPECT_EQ(held.per_link, 3);
+  EXPECT_EQ(held.capacity, 27);
+  EXPECT_NEAR(held.contacts[0].force_N, 4, 1e-12);
+  EXPECT_NEAR((held.contacts[0].point_W - world.sensed.contacts[0].point_W).norm(), 0.003, 1e-12) << "weighted by force";
+  EXPECT_NEAR(held.contacts[1].force_N, 0.5, 1e-12);
+  EXPECT_EQ(held.contacts[0].frame, held.contacts[1].frame);
+  EXPECT_EQ(port<double>(world, "touching"), 1) << "links, not contacts";
+  EXPECT_EQ(port<MissingSet>(world, "missing").points.size(), 8u);
+
+  // What is left of them keeps its number, whatever the order of the records, and moves with its touch.
+  world.sensed.contacts = along(world, {{0.033, 0.5}});
+  step();
+  ASSERT_EQ(held.contacts.size(), 1u);
+  EXPECT_EQ(held.contacts[0].number, 1);
+  world.sensed.contacts = along(world, {{0.033, 0.5}, {0, 1}});
+  step();
+  ASSERT_EQ(held.contacts.size(), 2u);
+  EXPECT_EQ(held.contacts[0].number, 0);
+  EXPECT_NEAR(held.contacts[0].force_N, 1, 1e-12);
+  EXPECT_NEAR(held.contacts[1].force_N, 0.5, 1e-12);
+}
+
+TEST_F(ContactsSignal, MoreTouchesThanPlacesJoinTheNearest) {
+  makeTouch({{"desired", "fingers"}, {"hold", "0"}, {"per-link", "2"}, {"apart", "0.005"}});
+  world.sensed.contacts = along(world, {{0, 1}, {0.03, 1}, {0.022, 2}});
+  step();
+  const ContactSet& held = port<ContactSet>(world, "held");
+  ASSERT_EQ(held.contacts.size(), 2u);
+  EXPECT_NEAR(held.contacts[0].force_N, 1, 1e-12);
+  EXPECT_NEAR(held.contacts[1].force_N, 3, 1e-12);
+}
+
+TEST_F(ContactsSignal, EachContactOfALinkWaitsForItsOwnHold) {
+  makeTouch({{"desired", "fingers"}, {"hold", "0.005"}, {"per-link", "2"}, {"apart", "0.01"}});
+  world.sensed.contacts = along(world, {{0, 1}});
+  for (int k = 0; k < 4; ++k) step();
+  world.sensed.contacts = along(world, {{0, 1}, {0.03, 1}});
+  for (int k = 0; k < 4; ++k) step();
+  const ContactSet& held = port<ContactSet>(world, "held");
+  ASSERT_EQ(held.contacts.size(), 1u);
+  EXPECT_EQ(held.contacts[0].number, 0);
+  for (int k = 0; k < 2; ++k) step();
+  EXPECT_EQ(held.contacts.size(), 2u);
+}
+
 TEST_F(ContactsSignal, TheRobotOnItselfIsInNoSet) {
   control::ContactRecord of_self = world.contactOn("index_distal", kDown, 2);
   of_self.object = -1;
