@@ -57,6 +57,12 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "heading", .type = ValueType::reals, .unit = "1",
        .description = "Direction that the forward axis keeps, world axes; not given: it turns freely.", .count = 3,
        .in_world = InWorld::directions},
+      {.name = "headings", .type = ValueType::points, .unit = "1",
+       .description = "Instead of `heading`: one direction a key, on the way to it.", .count = 3,
+       .in_world = InWorld::directions},
+      {.name = "turn-reach", .type = ValueType::real, .unit = "rad",
+       .description = "How far ahead of the hand its heading runs, at most, less as the pull fades; not given: all the way.",
+       .lower = 0, .lower_open = true},
       {.name = "tilt", .type = ValueType::real, .unit = "rad", .default_text = "0",
        .description = "Lean of the forward axis into the surface.", .lower = -1.5, .upper = 1.5},
       {.name = "yield-from", .type = ValueType::real, .unit = "N",
@@ -134,6 +140,19 @@ FollowSurface::FollowSurface(const BuildContext& context)
     yield_until_ = context.values.has("yield-until") ? context.values.real("yield-until") : 1.5 * yield_from_;
     if (!(yield_until_ > yield_from_)) throw ElementError("yield-until", "yield-until must be greater than yield-from");
   }
+  if (context.values.has("headings")) {
+    if (has_heading_) throw ElementError("headings", "give heading, one for all keys, or headings, one for each, not both");
+    const std::vector<double>& numbers = context.values.numbers("headings");
+    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
+      headings_W_.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+      if (headings_W_.back().norm() < 1e-9) throw ElementError("headings", "a heading must not be a zero vector");
+    }
+    if (headings_W_.size() != keys_W_.size())
+      throw ElementError("headings", "headings has " + std::to_string(headings_W_.size()) + " directions, expected " +
+                                         std::to_string(keys_W_.size()) + ", one a key");
+    has_heading_ = true;
+  }
+  if (context.values.has("turn-reach")) turn_reach_ = context.values.real("turn-reach");
   if (yaw_stiffness_ > 0 && !has_heading_) throw ElementError("yaw-stiffness", "yaw-stiffness needs a heading");
 }
 
@@ -141,6 +160,10 @@ const Eigen::Vector3d& FollowSurface::key() const {
   if (towards_) return towards_->position_W;
   if (keys_W_.empty()) return reference_W_;
   return keys_W_[std::min<std::size_t>(key_index_, keys_W_.size() - 1)];
+}
+
+const Eigen::Vector3d& FollowSurface::heading() const {
+  return headings_W_.empty() ? heading_W_ : headings_W_[std::min<std::size_t>(key_index_, headings_W_.size() - 1)];
 }
 
 void FollowSurface::updateNormal(double dt) {
@@ -173,14 +196,23 @@ void FollowSurface::updatePull(double dt) {
   pull_ = 1 - s * s * (3 - 2 * s);
 }
 
+// Angle about the normal from one direction to another.
+double FollowSurface::turnFrom(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const {
+  const Eigen::Vector3d from = from_W - from_W.dot(normal_W_) * normal_W_;
+  return std::atan2(normal_W_.dot(from.cross(to_W)), from.dot(to_W));
+}
+
 Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) const {
-  const Eigen::Vector3d ahead = has_heading_ && yaw_stiffness_ > 0 ? heading_W_ : Eigen::Vector3d(R_WH.col(1));
+  const Eigen::Vector3d ahead = has_heading_ && yaw_stiffness_ > 0 ? heading() : Eigen::Vector3d(R_WH.col(1));
   Eigen::Vector3d forward = ahead - ahead.dot(normal_W_) * normal_W_;
   if (forward.norm() < 1e-6) {
     // The hand points along the normal: any direction within the surface will do; keep the third axis.
     forward = R_WH.col(2).cross(normal_W_);
   }
   forward.normalize();
+  const double turn = turnFrom(R_WH.col(1), forward), most = pull_ * turn_reach_;
+  if (std::isfinite(turn_reach_) && std::abs(turn) > most)
+    forward = Eigen::AngleAxisd(std::copysign(most, turn) - turn, normal_W_) * forward;
   const Eigen::Vector3d leaned_forward = std::cos(tilt_) * forward + std::sin(tilt_) * normal_W_;
   const Eigen::Vector3d leaned_normal = std::cos(tilt_) * normal_W_ - std::sin(tilt_) * forward;
   Eigen::Matrix3d R_WR;
@@ -188,7 +220,13 @@ Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) co
   return R_WR;
 }
 
-void FollowSurface::advanceKey(double time, double tangential_distance) {
+// What the hand must still turn, beyond a turn-reach.
+double FollowSurface::leftToTurn(const Eigen::Matrix3d& R_WH) const {
+  const Eigen::Vector3d wanted = heading() - heading().dot(normal_W_) * normal_W_;
+  return wanted.norm() > 1e-6 ? std::max(std::abs(turnFrom(R_WH.col(1), wanted)) - turn_reach_, 0.0) : 0;
+}
+
+void FollowSurface::advanceKey(double time, double way) {
   if (towards_) {                                                  // who names the places also says when to go on
     key_index_ = towards_->number;
     return;
@@ -196,14 +234,14 @@ void FollowSurface::advanceKey(double time, double tangential_distance) {
   if (key_index_ >= static_cast<int>(keys_W_.size())) return;
   if (!key_started_) {
     key_started_ = true;
-    nearest_ = tangential_distance;
+    nearest_ = way;
     progress_time_ = time;
   }
-  if (tangential_distance < nearest_ - stall_progress_) {
-    nearest_ = tangential_distance;
+  if (way < nearest_ - stall_progress_) {
+    nearest_ = way;
     progress_time_ = time;
   }
-  const bool passed = !contacts_.contacts.empty() && tangential_distance < key_threshold_;
+  const bool passed = !contacts_.contacts.empty() && way < key_threshold_;
   const bool stalled = !passed && time - progress_time_ > stall_time_ && !contacts_.contacts.empty();
   if (passed) ++keys_passed_;
   if (stalled) ++keys_given_up_;
@@ -230,7 +268,9 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   const Eigen::Vector3d x_e = way * (pull_ * reach_ / std::max(distance_, near_));
   key_W_ = key();
   reference_W_ = p_W + x_e;
-  advanceKey(tick.time, distance_);
+  // With a heading of its own, a key is only there once the hand has turned: a turn-reach counts as much as a reach.
+  const bool turns = !headings_W_.empty() && yaw_stiffness_ > 0 && std::isfinite(turn_reach_);
+  advanceKey(tick.time, distance_ + (turns ? leftToTurn(R_WH) * reach_ / turn_reach_ : 0));
 
   const auto across = [&](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - normal_W_ * normal_W_.dot(v)); };
   const Eigen::Vector3d v_W = velocity.head<3>();

@@ -20,6 +20,9 @@ namespace tactus::tasks {
 ///    and a hand that leans would be lifted or pressed by its own sweep.
 /// Without contact the frame approaches along the last normal at `approach-speed`.
 ///
+/// The forward axis may be held to a `heading`, or to one a key, `headings`; it then runs no more than `turn-reach` ahead of
+/// the hand, and a key with a heading of its own is not passed before the hand has turned to within `turn-reach` of it.
+///
 /// The keys are a list, `along`, or come from a signal, `towards`, which then says when to go on.
 /// A key of the list counts as passed when its tangential distance falls below `key-threshold` while in contact.  It is given up
 /// when `stall-time` goes by without `stall-progress` towards it: a finger caught at an edge must not hold the sweep.
@@ -40,8 +43,11 @@ class FollowSurface final : public control::Task {
   void updateNormal(double dt);
   void updatePull(double dt);
   Eigen::Matrix3d wantedOrientation(const Eigen::Matrix3d& R_WH) const;
-  void advanceKey(double time, double tangential_distance);
+  double turnFrom(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const;
+  double leftToTurn(const Eigen::Matrix3d& R_WH) const;
+  void advanceKey(double time, double way);
   const Eigen::Vector3d& key() const;
+  const Eigen::Vector3d& heading() const;
 
   const control::ContactSet& contacts_;
   const control::ContactSet& yield_contacts_;
@@ -55,6 +61,8 @@ class FollowSurface final : public control::Task {
   double approach_speed_, stall_time_, stall_progress_;
   bool has_heading_;
   Eigen::Vector3d heading_W_;
+  std::vector<Eigen::Vector3d> headings_W_;                        ///< one a key, or none
+  double turn_reach_ = description::infinity;
 
   Eigen::Vector3d normal_W_;                                       ///< n_m, filtered
   double pressed_ = 0;                                             ///< N, filtered
