@@ -475,11 +475,12 @@ std::vector<runtime::NamedSensor> makeSensors(const Stack& stack, const control:
 
 std::vector<runtime::NamedMeasure> makeMeasures(const Stack& stack, const control::Registry& registry,
                                                 const control::Controller& controller,
-                                                const description::Scene& scene) {
+                                                const description::Scene& scene, const Eigen::VectorXd& start_q) {
   PartMaker parts(stack, registry);
   std::vector<runtime::NamedMeasure> measures;
   for (const ElementInstance& element : stack.run.measures) {
-    const control::MeasureContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene);
+    const control::MeasureContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene,
+                                          start_q);
     if (auto made = parts.make(element, [&] { return registry.makeMeasure(context); }))
       measures.push_back({element.name, std::move(*made)});
   }
@@ -494,11 +495,8 @@ std::vector<std::unique_ptr<runtime::GuardedObserver>> makeRecorders(const Stack
   PartMaker parts(stack, registry);
   const bool switch_off = controller.options().on_fault == control::OnFault::switch_off;
   std::vector<std::unique_ptr<runtime::GuardedObserver>> recorders;
-  const description::Scene scene = stack.scene(stack.run.seed);
-  const Eigen::VectorXd start_q = stack.start(stack.run.seed);
   for (const ElementInstance& element : stack.run.recorders) {
-    const control::RecorderContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene, start_q,
-                                           folder);
+    const control::RecorderContext context(parts.contextOf(element, portsOf(stack, controller)), controller, folder);
     if (auto made = parts.make(element, [&] { return registry.makeRecorder(context); }))
       recorders.push_back(std::make_unique<runtime::GuardedObserver>(element.name, std::move(*made), switch_off));
   }

@@ -63,6 +63,9 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "turn-reach", .type = ValueType::real, .unit = "rad",
        .description = "How far ahead of the hand its heading runs, at most, less as the pull fades; not given: all the way.",
        .lower = 0, .lower_open = true},
+      {.name = "turn-avoids", .type = ValueType::reals, .unit = "1",
+       .description = "Direction through which the heading does not turn, world axes: it takes the other way round.",
+       .count = 3, .in_world = InWorld::directions},
       {.name = "tilt", .type = ValueType::real, .unit = "rad", .default_text = "0",
        .description = "Lean of the forward axis into the surface.", .lower = -1.5, .upper = 1.5},
       {.name = "yield-from", .type = ValueType::real, .unit = "N",
@@ -153,7 +156,8 @@ FollowSurface::FollowSurface(const BuildContext& context)
     has_heading_ = true;
   }
   if (context.values.has("turn-reach")) turn_reach_ = context.values.real("turn-reach");
-  if (yaw_stiffness_ > 0 && !has_heading_) throw ElementError("yaw-stiffness", "yaw-stiffness needs a heading");
+  if (context.values.has("turn-avoids")) turn_avoids_W_ = direction(context, "turn-avoids");
+  if (yaw_stiffness_ > 0 && !has_heading_ && !towards_) throw ElementError("yaw-stiffness", "yaw-stiffness needs a heading");
 }
 
 const Eigen::Vector3d& FollowSurface::key() const {
@@ -162,8 +166,12 @@ const Eigen::Vector3d& FollowSurface::key() const {
   return keys_W_[std::min<std::size_t>(key_index_, keys_W_.size() - 1)];
 }
 
-const Eigen::Vector3d& FollowSurface::heading() const {
-  return headings_W_.empty() ? heading_W_ : headings_W_[std::min<std::size_t>(key_index_, headings_W_.size() - 1)];
+// Zero: none.
+Eigen::Vector3d FollowSurface::heading() const {
+  if (yaw_stiffness_ <= 0) return Eigen::Vector3d::Zero();
+  if (!headings_W_.empty()) return headings_W_[std::min<std::size_t>(key_index_, headings_W_.size() - 1)];
+  if (towards_ && !has_heading_) return towards_->known ? towards_->heading_W : Eigen::Vector3d::Zero();
+  return heading_W_;
 }
 
 void FollowSurface::updateNormal(double dt) {
@@ -198,12 +206,17 @@ void FollowSurface::updatePull(double dt) {
 
 // Angle about the normal from one direction to another.
 double FollowSurface::turnFrom(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const {
-  const Eigen::Vector3d from = from_W - from_W.dot(normal_W_) * normal_W_;
-  return std::atan2(normal_W_.dot(from.cross(to_W)), from.dot(to_W));
+  const auto angle = [&](const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) {
+    const Eigen::Vector3d a = a_W - a_W.dot(normal_W_) * normal_W_;
+    return std::atan2(normal_W_.dot(a.cross(b_W)), a.dot(b_W));
+  };
+  if (!turn_avoids_W_) return angle(from_W, to_W);
+  return angle(-*turn_avoids_W_, to_W) - angle(-*turn_avoids_W_, from_W);
 }
 
 Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) const {
-  const Eigen::Vector3d ahead = has_heading_ && yaw_stiffness_ > 0 ? heading() : Eigen::Vector3d(R_WH.col(1));
+  Eigen::Vector3d ahead = heading();
+  if (ahead.isZero()) ahead = R_WH.col(1);
   Eigen::Vector3d forward = ahead - ahead.dot(normal_W_) * normal_W_;
   if (forward.norm() < 1e-6) {
     // The hand points along the normal: any direction within the surface will do; keep the third axis.
@@ -222,7 +235,7 @@ Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) co
 
 // What the hand must still turn, beyond a turn-reach.
 double FollowSurface::leftToTurn(const Eigen::Matrix3d& R_WH) const {
-  const Eigen::Vector3d wanted = heading() - heading().dot(normal_W_) * normal_W_;
+  const Eigen::Vector3d ahead = heading(), wanted = ahead - ahead.dot(normal_W_) * normal_W_;
   return wanted.norm() > 1e-6 ? std::max(std::abs(turnFrom(R_WH.col(1), wanted)) - turn_reach_, 0.0) : 0;
 }
 
@@ -234,6 +247,7 @@ void FollowSurface::advanceKey(double time, double way) {
   if (key_index_ >= static_cast<int>(keys_W_.size())) return;
   if (!key_started_) {
     key_started_ = true;
+    key_start_time_ = time;
     nearest_ = way;
     progress_time_ = time;
   }
@@ -244,7 +258,10 @@ void FollowSurface::advanceKey(double time, double way) {
   const bool passed = !contacts_.contacts.empty() && way < key_threshold_;
   const bool stalled = !passed && time - progress_time_ > stall_time_ && !contacts_.contacts.empty();
   if (passed) ++keys_passed_;
-  if (stalled) ++keys_given_up_;
+  if (stalled) {
+    ++keys_given_up_;
+    given_up_s_ += time - key_start_time_;
+  }
   if (passed || stalled) {
     ++key_index_;
     key_started_ = false;
@@ -296,6 +313,8 @@ void FollowSurface::doArchive(Archive& archive) {
   archive("nearest", nearest_);
   archive("progress-time", progress_time_);
   archive("key-started", key_started_);
+  archive("key-start-time", key_start_time_);
+  archive("given-up-s", given_up_s_);
   archive("keys-passed", keys_passed_);
   archive("keys-given-up", keys_given_up_);
   archive("key-number", key_number_);
@@ -325,6 +344,7 @@ void FollowSurface::metrics(std::vector<Metric>& metrics) const {
   if (towards_) return;
   metrics.push_back({"keys_passed", keys_passed_});
   metrics.push_back({"keys_given_up", keys_given_up_});
+  metrics.push_back({"keys_given_up_s", given_up_s_});
   metrics.push_back({"keys_total", static_cast<double>(keys_W_.size())});
   metrics.push_back({"last_key_time_s", last_key_time_});
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "framework/control/registry.h"
@@ -20,8 +21,10 @@ namespace tactus::tasks {
 ///    and a hand that leans would be lifted or pressed by its own sweep.
 /// Without contact the frame approaches along the last normal at `approach-speed`.
 ///
-/// The forward axis may be held to a `heading`, or to one a key, `headings`; it then runs no more than `turn-reach` ahead of
-/// the hand, and a key with a heading of its own is not passed before the hand has turned to within `turn-reach` of it.
+/// The forward axis may be held to a `heading`, to one a key, `headings`, or to that of the place that a signal names.  It
+/// then runs no more than `turn-reach` ahead of the hand, and never through `turn-avoids`, where the arm may be at its stop:
+/// the hand turns the other way round.  A key of the list with a heading of its own is not passed before the hand has turned
+/// to within `turn-reach` of it.
 ///
 /// The keys are a list, `along`, or come from a signal, `towards`, which then says when to go on.
 /// A key of the list counts as passed when its tangential distance falls below `key-threshold` while in contact.  It is given up
@@ -47,7 +50,7 @@ class FollowSurface final : public control::Task {
   double leftToTurn(const Eigen::Matrix3d& R_WH) const;
   void advanceKey(double time, double way);
   const Eigen::Vector3d& key() const;
-  const Eigen::Vector3d& heading() const;
+  Eigen::Vector3d heading() const;
 
   const control::ContactSet& contacts_;
   const control::ContactSet& yield_contacts_;
@@ -63,6 +66,7 @@ class FollowSurface final : public control::Task {
   Eigen::Vector3d heading_W_;
   std::vector<Eigen::Vector3d> headings_W_;                        ///< one a key, or none
   double turn_reach_ = description::infinity;
+  std::optional<Eigen::Vector3d> turn_avoids_W_;
 
   Eigen::Vector3d normal_W_;                                       ///< n_m, filtered
   double pressed_ = 0;                                             ///< N, filtered
@@ -71,7 +75,9 @@ class FollowSurface final : public control::Task {
   double nearest_ = 0;                                             ///< least tangential distance to the key so far, m
   double progress_time_ = 0;                                       ///< s, when it last fell by stall-progress
   bool key_started_ = false;
+  double key_start_time_ = 0;                                      ///< s
   double keys_passed_ = 0, keys_given_up_ = 0, key_number_ = 0;
+  double given_up_s_ = 0;                                          ///< spent on keys that were given up
   double last_key_time_ = 0;
   double distance_ = 0;
   Eigen::Vector3d key_W_ = Eigen::Vector3d::Zero(), reference_W_ = Eigen::Vector3d::Zero();  ///< p_f, p_r of this tick

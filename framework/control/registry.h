@@ -103,20 +103,19 @@ struct SensorContext : BuildContext {
 
 /// What the factory of a measure may look at; ports are those of the controller's signals.
 struct MeasureContext : BuildContext {
-  MeasureContext(BuildContext context, const Controller& controller, const description::Scene& scene)
-      : BuildContext(std::move(context)), controller(controller), scene(scene) {}
+  MeasureContext(BuildContext context, const Controller& controller, const description::Scene& scene,
+                 const Eigen::VectorXd& start_q)
+      : BuildContext(std::move(context)), controller(controller), scene(scene), start_q(start_q) {}
   const Controller& controller;                                    ///< before its first tick; outlives the measure
   const description::Scene& scene;                                 ///< as the run's seed drew it; outlives the measure
+  const Eigen::VectorXd& start_q;                                  ///< dof, likewise drawn
 };
 
 /// What the factory of a recorder may look at; ports are those of the controller's signals.
 struct RecorderContext : BuildContext {
-  RecorderContext(BuildContext context, const Controller& controller, const description::Scene& scene,
-                  const Eigen::VectorXd& start_q, std::string folder)
-      : BuildContext(std::move(context)), controller(controller), scene(scene), start_q(start_q), folder(std::move(folder)) {}
+  RecorderContext(BuildContext context, const Controller& controller, std::string folder)
+      : BuildContext(std::move(context)), controller(controller), folder(std::move(folder)) {}
   const Controller& controller;                                    ///< before its first tick; outlives the recorder
-  const description::Scene& scene;                                 ///< as the run's seed drew it
-  const Eigen::VectorXd& start_q;                                  ///< dof, likewise
   std::string folder;                                              ///< of the run: files of a recorder go there
 };
 

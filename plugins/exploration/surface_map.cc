@@ -58,6 +58,9 @@ void SurfaceMap::registerIn(Registry& registry) {
        .upper = 1},
       {.name = "nearness", .type = ValueType::real, .unit = "1/m", .default_text = "2",
        .description = "What a metre of way counts against standard deviation.", .lower = 0},
+      {.name = "behind", .type = ValueType::real, .unit = "m",
+       .description = "The frame heads for a place outwards from the middle of what is known and comes so far behind it; not "
+                      "given: no heading, and the middle of the contacts is brought there.", .lower = 0},
       {.name = "patience", .type = ValueType::real, .unit = "s", .default_text = "2",
        .description = "A place is given up after so long without progress.", .lower = 0, .lower_open = true},
       {.name = "progress", .type = ValueType::real, .unit = "m", .default_text = "0.005",
@@ -94,6 +97,7 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
     box_W_[1][i] = within[static_cast<std::size_t>(i) + 3];
     if (!(box_W_[0][i] < box_W_[1][i])) throw ElementError("within", "within names a lower and an upper corner of a box");
   }
+  if (context.values.has("behind")) behind_ = context.values.real("behind");
   if (facing_W_.norm() < 1e-9) throw ElementError("facing", "facing must not be a zero vector");
   facing_W_.normalize();
   if (first_W_.norm() < 1e-9 || std::abs(first_W_.normalized().dot(facing_W_)) > 1e-6)
@@ -118,7 +122,10 @@ void SurfaceMap::doUpdate(const Tick& tick) {
   }
   followGoal(tick.time);
   next_.known = has_goal_;
-  if (has_goal_) {
+  next_.heading_W = heading_W_;
+  if (has_goal_ && behind_) {
+    next_.position_W = goal_W_ - *behind_ * heading_W_;
+  } else if (has_goal_) {
     const Vector3d p_W = tick.robot.framePose(frame_).translation();
     next_.position_W = goal_W_ - (has_middle_ && !contacts_.contacts.empty() ? Vector3d(middle_W_ - p_W) : Vector3d::Zero());
   }
@@ -208,24 +215,36 @@ void SurfaceMap::choose() {
   best_ = {};
   looked_ = 0;
   nearest_ = 1e9;
+  goal_time_ = -1;
+  if (behind_) headOutwards();
   ++next_.number;
+}
+
+void SurfaceMap::headOutwards() {
+  Vector3d middle_W = Vector3d::Zero();
+  for (const Vector3d& point_W : points_W_) middle_W += point_W / static_cast<double>(points_W_.size());
+  Vector3d out_W = goal_W_ - middle_W;
+  out_W -= out_W.dot(facing_W_) * facing_W_;
+  if (out_W.norm() > 0.5 * *behind_ && out_W.norm() > 1e-6) heading_W_ = out_W.normalized();
 }
 
 void SurfaceMap::followGoal(double time) {
   if (!has_goal_) return;
+  if (goal_time_ < 0) goal_time_ = time;
   const double distance = (goal_W_ - middle_W_).norm();
   if (distance < nearest_ - progress_ || contacts_.contacts.empty()) {
     if (!contacts_.contacts.empty()) nearest_ = distance;
     progress_time_ = time;
   }
-  if (goal_uncertainty_ < known_) return leaveGoal(true);
-  if (time - progress_time_ > patience_) leaveGoal(false);
+  if (goal_uncertainty_ < known_) return leaveGoal(true, time);
+  if (time - progress_time_ > patience_) leaveGoal(false, time);
 }
 
-void SurfaceMap::leaveGoal(bool reached) {
+void SurfaceMap::leaveGoal(bool reached, double time) {
   has_goal_ = false;
   ++(reached ? reached_ : given_up_);
   if (reached) return;
+  given_up_s_ += time - goal_time_;
   left_W_[static_cast<std::size_t>(left_next_)] = goal_W_;
   left_next_ = (left_next_ + 1) % static_cast<int>(left_W_.size());
 }
@@ -250,6 +269,9 @@ void SurfaceMap::doArchive(Archive& archive) {
   archive("has-middle", has_middle_);
   archive("goal", goal_W_);
   archive("has-goal", has_goal_);
+  archive("heading", heading_W_);
+  archive("goal-time", goal_time_);
+  archive("given-up-s", given_up_s_);
   archive("nearest", nearest_);
   archive("progress-time", progress_time_);
   archive("goal-uncertainty", goal_uncertainty_);
@@ -282,6 +304,7 @@ void SurfaceMap::metrics(std::vector<Metric>& metrics) const {
   metrics.push_back({"map_points", n_points_});
   metrics.push_back({"places_reached", reached_});
   metrics.push_back({"places_given_up", given_up_});
+  metrics.push_back({"places_given_up_s", given_up_s_});
 }
 
 }  // namespace tactus::exploration

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "framework/control/registry.h"
@@ -22,7 +23,9 @@ namespace tactus::exploration {
 /// distance from the middle of the contacts, w `nearness`.
 ///
 /// `next` is that place, as a goal for `frame`: it is shifted so that the middle of the contacts, not the frame, gets
-/// there.  It is left for the next one when s falls below `known` (reached), or when `patience` passes without the
+/// there.  With `behind` it also has a heading, outwards from the middle of what is known, across `facing`, and the frame
+/// shall come as far behind the place: so a hand puts its fingers over each side of a thing in turn.  A place that is
+/// nearer to that middle than half of `behind` leaves the heading as it was.  It is left for the next one when s falls below `known` (reached), or when `patience` passes without the
 /// middle of the contacts coming `progress` nearer (given up: within `step` of it no other is chosen for a while).
 ///
 /// Work is spread: every `every`-th tick adds one observation, O(n²), or looks at one place.  Takes no memory after
@@ -55,13 +58,15 @@ class SurfaceMap final : public control::Signal {
   bool placeAround(int point, int direction, Eigen::Vector3d& place_W) const;
   void choose();
   void followGoal(double time);
-  void leaveGoal(bool reached);
+  void leaveGoal(bool reached, double time);
+  void headOutwards();
   double uncertaintyAt(const Eigen::Vector3d& p_W);
 
   const control::TouchedPoints& touched_;
   const control::ContactSet& contacts_;
   int frame_;
   double spacing_, depth_, step_, facing_cosine_, known_, nearness_, patience_, progress_;
+  std::optional<double> behind_;                                   ///< m
   int every_;
   std::array<Eigen::Vector3d, 2> box_W_;
   Eigen::Vector3d facing_W_, first_W_;
@@ -77,11 +82,13 @@ class SurfaceMap final : public control::Signal {
   bool has_middle_ = false;
   Eigen::Vector3d goal_W_ = Eigen::Vector3d::Zero();
   bool has_goal_ = false;
-  double nearest_ = 0, progress_time_ = 0, goal_uncertainty_ = 0;
+  Eigen::Vector3d heading_W_ = Eigen::Vector3d::Zero();            ///< towards the goal; zero: none yet
+  double nearest_ = 0, progress_time_ = 0, goal_time_ = -1, goal_uncertainty_ = 0;
   std::array<Eigen::Vector3d, 16> left_W_;                         ///< given up, a ring
   int left_next_ = 0;
   control::Place next_;
   double n_points_ = 0, most_uncertain_ = 1, reached_ = 0, given_up_ = 0;
+  double given_up_s_ = 0;                                          ///< spent on places that were given up
 };
 
 }  // namespace tactus::exploration
