@@ -34,6 +34,9 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "approach", .type = ValueType::reals, .unit = "1", .default_text = "0 0 -1",
        .description = "Direction of the first approach, world axes.", .count = 3,
        .in_world = InWorld::directions},
+      {.name = "lean", .type = ValueType::real, .unit = "rad",
+       .description = "How far the normal axis may lean from `approach`, at most; not given: as far as the surface does.",
+       .lower = 0, .upper = 3.1, .lower_open = true},
       {.name = "approach-speed", .type = ValueType::real, .unit = "m/s", .default_text = "0.02",
        .description = "Speed along the last normal while nothing touches.", .lower = 0},
       {.name = "reach", .type = ValueType::real, .unit = "m", .default_text = "0.03",
@@ -121,7 +124,9 @@ FollowSurface::FollowSurface(const BuildContext& context)
       stall_progress_(context.values.real("stall-progress")),
       has_heading_(context.values.has("heading")),
       heading_W_(has_heading_ ? direction(context, "heading") : Eigen::Vector3d::Zero()),
-      normal_W_(direction(context, "approach")) {
+      approach_W_(direction(context, "approach")),
+      normal_W_(approach_W_) {
+  if (context.values.has("lean")) lean_ = context.values.real("lean");
   if (context.values.has("along") && context.values.has("towards"))
     throw ElementError("along", "where to: give along, key positions, or towards, a signal's place, not both");
   if (context.values.has("towards")) {
@@ -204,30 +209,39 @@ void FollowSurface::updatePull(double dt) {
   pull_ = 1 - s * s * (3 - 2 * s);
 }
 
+Eigen::Vector3d FollowSurface::wantedNormal() const {
+  const Eigen::Vector3d axis = approach_W_.cross(normal_W_);
+  const double leaned = std::atan2(axis.norm(), approach_W_.dot(normal_W_));
+  if (leaned <= lean_ || axis.norm() < 1e-9) return normal_W_;
+  return Eigen::AngleAxisd(lean_, axis.normalized()) * approach_W_;
+}
+
 // Angle about the normal from one direction to another.
 double FollowSurface::turnFrom(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const {
+  const Eigen::Vector3d normal_W = wantedNormal();
   const auto angle = [&](const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) {
-    const Eigen::Vector3d a = a_W - a_W.dot(normal_W_) * normal_W_;
-    return std::atan2(normal_W_.dot(a.cross(b_W)), a.dot(b_W));
+    const Eigen::Vector3d a = a_W - a_W.dot(normal_W) * normal_W;
+    return std::atan2(normal_W.dot(a.cross(b_W)), a.dot(b_W));
   };
   if (!turn_avoids_W_) return angle(from_W, to_W);
   return angle(-*turn_avoids_W_, to_W) - angle(-*turn_avoids_W_, from_W);
 }
 
 Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) const {
+  const Eigen::Vector3d normal_W = wantedNormal();
   Eigen::Vector3d ahead = heading();
   if (ahead.isZero()) ahead = R_WH.col(1);
-  Eigen::Vector3d forward = ahead - ahead.dot(normal_W_) * normal_W_;
+  Eigen::Vector3d forward = ahead - ahead.dot(normal_W) * normal_W;
   if (forward.norm() < 1e-6) {
     // The hand points along the normal: any direction within the surface will do; keep the third axis.
-    forward = R_WH.col(2).cross(normal_W_);
+    forward = R_WH.col(2).cross(normal_W);
   }
   forward.normalize();
   const double turn = turnFrom(R_WH.col(1), forward), most = pull_ * turn_reach_;
   if (std::isfinite(turn_reach_) && std::abs(turn) > most)
-    forward = Eigen::AngleAxisd(std::copysign(most, turn) - turn, normal_W_) * forward;
-  const Eigen::Vector3d leaned_forward = std::cos(tilt_) * forward + std::sin(tilt_) * normal_W_;
-  const Eigen::Vector3d leaned_normal = std::cos(tilt_) * normal_W_ - std::sin(tilt_) * forward;
+    forward = Eigen::AngleAxisd(std::copysign(most, turn) - turn, normal_W) * forward;
+  const Eigen::Vector3d leaned_forward = std::cos(tilt_) * forward + std::sin(tilt_) * normal_W;
+  const Eigen::Vector3d leaned_normal = std::cos(tilt_) * normal_W - std::sin(tilt_) * forward;
   Eigen::Matrix3d R_WR;
   R_WR << leaned_normal, leaned_forward, leaned_normal.cross(leaned_forward);
   return R_WR;
@@ -235,7 +249,8 @@ Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) co
 
 // What the hand must still turn, beyond a turn-reach.
 double FollowSurface::leftToTurn(const Eigen::Matrix3d& R_WH) const {
-  const Eigen::Vector3d ahead = heading(), wanted = ahead - ahead.dot(normal_W_) * normal_W_;
+  const Eigen::Vector3d normal_W = wantedNormal(), ahead = heading();
+  const Eigen::Vector3d wanted = ahead - ahead.dot(normal_W) * normal_W;
   return wanted.norm() > 1e-6 ? std::max(std::abs(turnFrom(R_WH.col(1), wanted)) - turn_reach_, 0.0) : 0;
 }
 

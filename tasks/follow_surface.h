@@ -12,7 +12,9 @@ namespace tactus::tasks {
 /// Each tick, from the contacts alone:
 /// 1. the median normal n_m, the normalised mean of the two most different contact normals (A.1.1), low-passed;
 /// 2. the wanted orientation: the frame's `normal-axis` on n_m, its `forward-axis` on its own projection onto the
-///    plane ⟂ n_m (A.1.2, A.1.3), leaned by `tilt` so that the forward end goes into the surface;
+///    plane ⟂ n_m (A.1.2, A.1.3), leaned by `tilt` so that the forward end goes into the surface.  With `lean` the normal
+///    axis stays as near to the first approach: fingers that hang over an edge feel only the side, and would draw the
+///    hand over it to where the arm is at its stop;
 /// 3. the wanted position p_r: towards the key p_f, within the plane ⟂ n_m, a step `reach` ahead, less when nearer
 ///    than `near` (A.1.4–A.1.6), and less the more a contact presses: by 1 − 3s² + 2s³, s the largest force, low-passed,
 ///    between `yield-from` and `yield-until`.  What is jammed is then not pushed on by the sweep;
@@ -46,6 +48,7 @@ class FollowSurface final : public control::Task {
   void updateNormal(double dt);
   void updatePull(double dt);
   Eigen::Matrix3d wantedOrientation(const Eigen::Matrix3d& R_WH) const;
+  Eigen::Vector3d wantedNormal() const;
   double turnFrom(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const;
   double leftToTurn(const Eigen::Matrix3d& R_WH) const;
   void advanceKey(double time, double way);
@@ -67,6 +70,8 @@ class FollowSurface final : public control::Task {
   std::vector<Eigen::Vector3d> headings_W_;                        ///< one a key, or none
   double turn_reach_ = description::infinity;
   std::optional<Eigen::Vector3d> turn_avoids_W_;
+  Eigen::Vector3d approach_W_;
+  double lean_ = description::infinity;
 
   Eigen::Vector3d normal_W_;                                       ///< n_m, filtered
   double pressed_ = 0;                                             ///< N, filtered

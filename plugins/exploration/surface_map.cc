@@ -58,9 +58,13 @@ void SurfaceMap::registerIn(Registry& registry) {
        .upper = 1},
       {.name = "nearness", .type = ValueType::real, .unit = "1/m", .default_text = "2",
        .description = "What a metre of way counts against standard deviation.", .lower = 0},
-      {.name = "behind", .type = ValueType::real, .unit = "m",
-       .description = "The frame heads for a place outwards from the middle of what is known and comes so far behind it; not "
-                      "given: no heading, and the middle of the contacts is brought there.", .lower = 0},
+      {.name = "heading", .type = ValueType::choice, .default_text = "any",
+       .description = "How the frame shall point when it gets to a place: anyhow, or away from the middle of what is known.",
+       .choices = {"any", "outwards"}},
+      {.name = "forward-axis", .type = ValueType::reals, .unit = "1", .default_text = "0 0 1",
+       .description = "Axis of the frame that then points there.", .count = 3},
+      {.name = "clearance", .type = ValueType::real, .unit = "m", .default_text = "0.06",
+       .description = "Places this near to one that was given up are left out for a while.", .lower = 0},
       {.name = "patience", .type = ValueType::real, .unit = "s", .default_text = "2",
        .description = "A place is given up after so long without progress.", .lower = 0, .lower_open = true},
       {.name = "progress", .type = ValueType::real, .unit = "m", .default_text = "0.005",
@@ -87,8 +91,11 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
       patience_(context.values.real("patience")),
       progress_(context.values.real("progress")),
       every_(context.values.integer("every")),
+      clearance_(context.values.real("clearance")),
+      outwards_(context.values.text("heading") == "outwards"),
       facing_W_(context.values.vector3("facing")),
       first_W_(context.values.vector3("first")),
+      forward_F_(context.values.vector3("forward-axis")),
       capacity_(context.values.integer("capacity")),
       process_({context.values.real("length"), 1, context.values.real("noise")}, 1, 2 * capacity_) {
   const std::vector<double>& within = context.values.numbers("within");
@@ -97,7 +104,7 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
     box_W_[1][i] = within[static_cast<std::size_t>(i) + 3];
     if (!(box_W_[0][i] < box_W_[1][i])) throw ElementError("within", "within names a lower and an upper corner of a box");
   }
-  if (context.values.has("behind")) behind_ = context.values.real("behind");
+  if (forward_F_.norm() < 1e-9) throw ElementError("forward-axis", "forward-axis must not be a zero vector");
   if (facing_W_.norm() < 1e-9) throw ElementError("facing", "facing must not be a zero vector");
   facing_W_.normalize();
   if (first_W_.norm() < 1e-9 || std::abs(first_W_.normalized().dot(facing_W_)) > 1e-6)
@@ -123,11 +130,12 @@ void SurfaceMap::doUpdate(const Tick& tick) {
   followGoal(tick.time);
   next_.known = has_goal_;
   next_.heading_W = heading_W_;
-  if (has_goal_ && behind_) {
-    next_.position_W = goal_W_ - *behind_ * heading_W_;
-  } else if (has_goal_) {
-    const Vector3d p_W = tick.robot.framePose(frame_).translation();
-    next_.position_W = goal_W_ - (has_middle_ && !contacts_.contacts.empty() ? Vector3d(middle_W_ - p_W) : Vector3d::Zero());
+  if (has_goal_) {
+    const Eigen::Isometry3d X_WF = tick.robot.framePose(frame_);
+    Vector3d ahead_W = Vector3d::Zero();
+    if (has_middle_ && !contacts_.contacts.empty()) ahead_W = middle_W_ - X_WF.translation();
+    if (outwards_ && !heading_W_.isZero()) ahead_W = turnTo(X_WF.linear() * forward_F_) * ahead_W;
+    next_.position_W = goal_W_ - ahead_W;
   }
   n_points_ = static_cast<double>(points_W_.size());
 }
@@ -179,7 +187,7 @@ bool SurfaceMap::placeAround(int point, int direction, Vector3d& place_W) const 
   if ((place_W.array() < box_W_[0].array()).any() || (place_W.array() > box_W_[1].array()).any()) return false;
   if (gradient.normalized().dot(facing_W_) < facing_cosine_) return false;
   return std::none_of(left_W_.begin(), left_W_.end(),
-                      [&](const Vector3d& left) { return (left - place_W).squaredNorm() < step_ * step_; });
+                      [&](const Vector3d& left) { return (left - place_W).squaredNorm() < clearance_ * clearance_; });
 }
 
 void SurfaceMap::look() {
@@ -216,7 +224,7 @@ void SurfaceMap::choose() {
   looked_ = 0;
   nearest_ = 1e9;
   goal_time_ = -1;
-  if (behind_) headOutwards();
+  if (outwards_) headOutwards();
   ++next_.number;
 }
 
@@ -225,7 +233,13 @@ void SurfaceMap::headOutwards() {
   for (const Vector3d& point_W : points_W_) middle_W += point_W / static_cast<double>(points_W_.size());
   Vector3d out_W = goal_W_ - middle_W;
   out_W -= out_W.dot(facing_W_) * facing_W_;
-  if (out_W.norm() > 0.5 * *behind_ && out_W.norm() > 1e-6) heading_W_ = out_W.normalized();
+  if (out_W.norm() > 0.5 * step_) heading_W_ = out_W.normalized();
+}
+
+// The rotation about `facing` that takes a direction to the heading.
+Eigen::Matrix3d SurfaceMap::turnTo(const Vector3d& forward_W) const {
+  const double angle = std::atan2(facing_W_.dot(forward_W.cross(heading_W_)), forward_W.dot(heading_W_));
+  return Eigen::AngleAxisd(angle, facing_W_).toRotationMatrix();
 }
 
 void SurfaceMap::followGoal(double time) {

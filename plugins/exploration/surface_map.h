@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "framework/control/registry.h"
@@ -23,10 +22,10 @@ namespace tactus::exploration {
 /// distance from the middle of the contacts, w `nearness`.
 ///
 /// `next` is that place, as a goal for `frame`: it is shifted so that the middle of the contacts, not the frame, gets
-/// there.  With `behind` it also has a heading, outwards from the middle of what is known, across `facing`, and the frame
-/// shall come as far behind the place: so a hand puts its fingers over each side of a thing in turn.  A place that is
-/// nearer to that middle than half of `behind` leaves the heading as it was.  It is left for the next one when s falls below `known` (reached), or when `patience` passes without the
-/// middle of the contacts coming `progress` nearer (given up: within `step` of it no other is chosen for a while).
+/// there.  With `heading` = outwards it also has a heading, from the middle of what is known to the place, across `facing`:
+/// so a hand puts its fingers over each side of a thing in turn; the shift is turned with it.  A place that is nearer to that
+/// middle than half a `step` leaves the heading as it was.  It is left for the next one when s falls below `known` (reached), or when `patience` passes without the
+/// middle of the contacts coming `progress` nearer (given up: within `clearance` of it no other is chosen for a while).
 ///
 /// Work is spread: every `every`-th tick adds one observation, O(n²), or looks at one place.  Takes no memory after
 /// construction.
@@ -60,16 +59,18 @@ class SurfaceMap final : public control::Signal {
   void followGoal(double time);
   void leaveGoal(bool reached, double time);
   void headOutwards();
+  Eigen::Matrix3d turnTo(const Eigen::Vector3d& forward_W) const;
   double uncertaintyAt(const Eigen::Vector3d& p_W);
 
   const control::TouchedPoints& touched_;
   const control::ContactSet& contacts_;
   int frame_;
   double spacing_, depth_, step_, facing_cosine_, known_, nearness_, patience_, progress_;
-  std::optional<double> behind_;                                   ///< m
+  double clearance_;
+  bool outwards_;
   int every_;
   std::array<Eigen::Vector3d, 2> box_W_;
-  Eigen::Vector3d facing_W_, first_W_;
+  Eigen::Vector3d facing_W_, first_W_, forward_F_;
   int capacity_;
 
   GaussianProcess process_;
