@@ -31,7 +31,7 @@ TEST(Plot, ABandIsClosedBelowItsLineAndWidensTheAxis) {
   const std::string svg = svgDocument(600, 300, draw(plot, box));
   expectWellFormed(svg);
   EXPECT_THAT(svg, HasSubstr("Z' fill='blue' fill-opacity='0.18'"));
-  EXPECT_THAT(svg, HasSubstr(">7<")) << "the upper bound is on the axis";
+  EXPECT_THAT(svg, HasSubstr(">6<")) << "the axis goes on to the upper bound";
 }
 
 TEST(Plot, LinesHaveTitleAndUnits) {

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "dsl/compile.h"
+#include <cmath>
+
 #include "framework/geometry/primitives.h"
+#include "tests/runtime/pendulum.h"
 #include "tests/tasks/task_world.h"
 
 namespace tactus::exploration {
@@ -54,7 +56,7 @@ class CoverageTest : public ::testing::Test {
   test::TaskWorld world;
   description::Scene scene;
   control::ElementValues values;
-  const control::Controller* controller = nullptr;                 // nobody looks at it
+  std::unique_ptr<control::Controller> controller = testing::pendulumController(0);  // nobody looks at it
   Eigen::VectorXd torque = Eigen::VectorXd::Zero(23);
   std::unique_ptr<control::Measure> measure;
 };
