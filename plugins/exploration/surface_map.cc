@@ -13,6 +13,7 @@ namespace {
 
 constexpr int directions = 8;
 constexpr int newton_steps = 4;
+constexpr std::size_t most_met = 20000;
 constexpr int check_every = 16;                                    // looks, at how well the goal is known
 constexpr double on_surface = 0.2;                                 // of the mean, where a place counts as on it
 const Vector3d nowhere = Vector3d::Constant(1e9);
@@ -56,6 +57,9 @@ void SurfaceMap::registerIn(Registry& registry) {
       {.name = "known", .type = ValueType::real, .unit = "1", .default_text = "0.4",
        .description = "A place is known when its standard deviation, over the prior one, is below this.", .lower = 0,
        .upper = 1},
+      {.name = "met-within", .type = ValueType::real, .unit = "m",
+       .description = "And when a touched point is as near as this; not given: however far they are.", .lower = 0,
+       .lower_open = true},
       {.name = "nearness", .type = ValueType::real, .unit = "1/m", .default_text = "2",
        .description = "What a metre of way counts against standard deviation.", .lower = 0},
       {.name = "heading", .type = ValueType::choice, .default_text = "any",
@@ -113,6 +117,10 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
   points_W_.reserve(static_cast<std::size_t>(capacity_));
   normals_W_.reserve(static_cast<std::size_t>(capacity_));
   left_W_.fill(nowhere);
+  if (context.values.has("met-within")) {
+    met_within_ = context.values.real("met-within");
+    met_W_.reserve(most_met);
+  }
 }
 
 void SurfaceMap::doUpdate(const Tick& tick) {
@@ -125,7 +133,10 @@ void SurfaceMap::doUpdate(const Tick& tick) {
   if (++tick_ >= every_) {
     tick_ = 0;
     if (!learn()) look();
-    if (has_goal_ && looked_ % check_every == 0) goal_uncertainty_ = uncertaintyAt(goal_W_);
+    if (has_goal_ && looked_ % check_every == 0) {
+      goal_uncertainty_ = uncertaintyAt(goal_W_);
+      goal_met_ = isMet(goal_W_);
+    }
   }
   followGoal(tick.time);
   next_.known = has_goal_;
@@ -147,8 +158,10 @@ bool SurfaceMap::learn() {
     process_.observe(points_W_.back() - depth_ * normals_W_.back(), -1);
     return true;
   }
-  while (read_ < touched_.points.size() && static_cast<int>(points_W_.size()) < capacity_) {
+  while (read_ < touched_.points.size()) {
     const TouchedPoint& touched = touched_.points[read_++];
+    meet(touched.point_W);
+    if (static_cast<int>(points_W_.size()) == capacity_) continue;
     const auto isNear = [&](const Vector3d& kept) {
       return (kept - touched.point_W).squaredNorm() < spacing_ * spacing_;
     };
@@ -164,6 +177,19 @@ bool SurfaceMap::learn() {
 
 double SurfaceMap::uncertaintyAt(const Vector3d& p_W) {
   return std::sqrt(process_.variance(p_W)) / process_.covariance().deviation;
+}
+
+void SurfaceMap::meet(const Vector3d& p_W) {
+  if (met_within_ <= 0 || met_W_.size() >= most_met) return;
+  const double apart = 0.5 * met_within_;
+  const auto isNear = [&](const Vector3d& met) { return (met - p_W).squaredNorm() < apart * apart; };
+  if (std::none_of(met_W_.begin(), met_W_.end(), isNear)) met_W_.push_back(p_W);
+}
+
+bool SurfaceMap::isMet(const Vector3d& p_W) const {
+  if (met_within_ <= 0) return true;
+  return std::any_of(met_W_.begin(), met_W_.end(),
+                     [&](const Vector3d& met) { return (met - p_W).squaredNorm() < met_within_ * met_within_; });
 }
 
 bool SurfaceMap::placeAround(int point, int direction, Vector3d& place_W) const {
@@ -207,7 +233,7 @@ void SurfaceMap::look() {
   const int now = looked_++;
   if (!placeAround(now % count, now / count % directions, place_W)) return;
   const double uncertainty = uncertaintyAt(place_W);
-  if (uncertainty < known_) return;
+  if (uncertainty < known_ && isMet(place_W)) return;
   const double score = uncertainty - (has_middle_ ? nearness_ * (place_W - middle_W_).norm() : 0);
   if (score > best_.score) best_ = {true, score, uncertainty, place_W};
 }
@@ -220,6 +246,7 @@ void SurfaceMap::choose() {
   has_goal_ = true;
   goal_W_ = best_.point_W;
   goal_uncertainty_ = best_.uncertainty;
+  goal_met_ = false;
   best_ = {};
   looked_ = 0;
   nearest_ = 1e9;
@@ -250,7 +277,7 @@ void SurfaceMap::followGoal(double time) {
     if (!contacts_.contacts.empty()) nearest_ = distance;
     progress_time_ = time;
   }
-  if (goal_uncertainty_ < known_) return leaveGoal(true, time);
+  if (goal_uncertainty_ < known_ && goal_met_) return leaveGoal(true, time);
   if (time - progress_time_ > patience_) leaveGoal(false, time);
 }
 
@@ -275,6 +302,8 @@ void SurfaceMap::doArchive(Archive& archive) {
   archive.growing("points", points_W_);
   archive.growing("normals", normals_W_);
   archive("read", read_);
+  archive.growing("met", met_W_);
+  archive("goal-met", goal_met_);
   archive("owes-depth", owes_depth_);
   archive("tick", tick_);
   archive("looked", looked_);
