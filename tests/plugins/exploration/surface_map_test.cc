@@ -51,6 +51,8 @@ class SurfaceMapTest : public ::testing::Test {
   }
 
   test::TaskWorld world;
+  control::ElementValues touch_values = control::makeValues(*world.registry.elements().find("contacts"),
+                                                            {{"name", "touch"}, {"desired", "fingers"}, {"hold", "0"}});
   control::ElementValues values;
   std::unique_ptr<control::Signal> signal;
   const control::Place* next = nullptr;
@@ -112,6 +114,28 @@ TEST_F(SurfaceMapTest, HeadsOutwardsFromWhatIsKnownAndTurnsTheShiftAlong) {
   // Known is a patch about (0, −0.25, 1): the place lies outwards of its middle.
   const Eigen::Vector3d out = place - (centre + radius * Eigen::Vector3d(0, -0.25, 1).normalized());
   EXPECT_GT(heading.dot(out.normalized()), 0.5);
+}
+
+TEST_F(SurfaceMapTest, WhereTheProcessIsSureItStillGoesWhereNoTouchWas) {
+  // Sure of everything: nothing is left to know, unless a touch must have been near.
+  for (const bool asks : {false, true}) {
+    world.touch = world.registry.makeSignal(world.context(touch_values));
+    if (asks) make({{"known", "1"}, {"step", "0.03"}, {"met-within", "0.01"}});
+    else make({{"known", "1"}, {"step", "0.03"}});
+    std::vector<Eigen::Vector3d> touched;
+    for (double x = -0.25; x <= 0.3; x += 0.25)
+      for (double y = -0.25; y <= 0.3; y += 0.25) {
+        touch({x, y, 1});
+        touched.push_back(world.sensed.contacts[0].point_W);
+      }
+    tick(1000);
+    ASSERT_EQ(next->known, asks);
+    if (!asks) continue;
+    const Eigen::Vector3d palm = world.cache.framePose(world.link("palm")).translation();
+    const Eigen::Vector3d place = next->position_W + touched.back() - palm;
+    EXPECT_NEAR((place - centre).norm(), radius, 0.01);
+    for (const Eigen::Vector3d& point : touched) EXPECT_GT((place - point).norm(), 0.01);
+  }
 }
 
 TEST_F(SurfaceMapTest, GivesUpAPlaceThatItDoesNotComeNearTo) {
