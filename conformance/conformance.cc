@@ -89,7 +89,7 @@ void checkMaking(dsl::Stack stack, const control::Registry& registry, const Elem
       const auto controller = dsl::compile(stack, registry);
       const runtime::TemporaryFolder folder;
       const description::Scene scene = stack.scene(1);
-      if (row.kind == ElementKind::measure) dsl::makeMeasures(stack, registry, *controller, scene);
+      if (row.kind == ElementKind::measure) dsl::makeMeasures(stack, registry, *controller, scene, stack.start(1));
       if (row.kind == ElementKind::recorder) dsl::makeRecorders(stack, registry, *controller, folder.path);
     } catch (const dsl::InvalidStack& invalid) {
       throw Broken{sentenceOf(invalid)};

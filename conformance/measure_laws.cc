@@ -18,11 +18,12 @@ class MeasureBench {
  public:
   MeasureBench(const Subject& subject, unsigned states)
       : scene_(subject.stack.scene(kSeed)),
+        start_q_(subject.stack.start(kSeed)),
         controller_(dsl::compile(subject.stack, subject.registry)),
         bench_(subject.stack, subject.registry),
         states_(subject.stack, states) {
     for (const description::Object& object : scene_.objects) objects_.push_back({object.pose});
-    for (auto& named : dsl::makeMeasures(subject.stack, subject.registry, *controller_, scene_))
+    for (auto& named : dsl::makeMeasures(subject.stack, subject.registry, *controller_, scene_, start_q_))
       if (named.name == subject.name) measure_ = std::move(named.measure);
     measure_->columns(columns_);
   }
@@ -58,6 +59,7 @@ class MeasureBench {
 
  private:
   description::Scene scene_;
+  Eigen::VectorXd start_q_;
   std::unique_ptr<control::Controller> controller_;
   Bench bench_;
   States states_;

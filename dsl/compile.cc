@@ -475,7 +475,7 @@ std::vector<runtime::NamedSensor> makeSensors(const Stack& stack, const control:
 
 std::vector<runtime::NamedMeasure> makeMeasures(const Stack& stack, const control::Registry& registry,
                                                 const control::Controller& controller,
-                                                const description::Scene& scene) {
+                                                const description::Scene& scene, const Eigen::VectorXd& start_q) {
   PartMaker parts(stack, registry);
   const auto another_back_end = [&]() -> std::unique_ptr<control::BackEnd> {
     const control::Recipe& recipe = controller.backEnd().recipe();
@@ -485,7 +485,7 @@ std::vector<runtime::NamedMeasure> makeMeasures(const Stack& stack, const contro
   std::vector<runtime::NamedMeasure> measures;
   for (const ElementInstance& element : stack.run.measures) {
     const control::MeasureContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene,
-                                          another_back_end);
+                                          start_q, another_back_end);
     if (auto made = parts.make(element, [&] { return registry.makeMeasure(context); }))
       measures.push_back({element.name, std::move(*made)});
   }
@@ -500,11 +500,8 @@ std::vector<std::unique_ptr<runtime::GuardedObserver>> makeRecorders(const Stack
   PartMaker parts(stack, registry);
   const bool switch_off = controller.options().on_fault == control::OnFault::switch_off;
   std::vector<std::unique_ptr<runtime::GuardedObserver>> recorders;
-  const description::Scene scene = stack.scene(stack.run.seed);
-  const Eigen::VectorXd start_q = stack.start(stack.run.seed);
   for (const ElementInstance& element : stack.run.recorders) {
-    const control::RecorderContext context(parts.contextOf(element, portsOf(stack, controller)), controller, scene, start_q,
-                                           folder);
+    const control::RecorderContext context(parts.contextOf(element, portsOf(stack, controller)), controller, folder);
     if (auto made = parts.make(element, [&] { return registry.makeRecorder(context); }))
       recorders.push_back(std::make_unique<runtime::GuardedObserver>(element.name, std::move(*made), switch_off));
   }

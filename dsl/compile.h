@@ -23,10 +23,10 @@ std::vector<runtime::NamedSensor> makeSensors(const Stack& stack, const control:
                                               const description::Scene& scene, std::uint64_t seed);
 
 /// The stack's measures; ports that they read are those of the controller's signals, which outlives them as the scene does.
-/// Throws InvalidStack.
+/// `scene` and `start_q` are those of the run's seed.  Throws InvalidStack.
 std::vector<runtime::NamedMeasure> makeMeasures(const Stack& stack, const control::Registry& registry,
                                                 const control::Controller& controller,
-                                                const description::Scene& scene);
+                                                const description::Scene& scene, const Eigen::VectorXd& start_q);
 
 /// The stack's own recorders, each to write into `folder`; ports that they read are those of the controller's signals.
 /// Throws InvalidStack with what a factory refuses, FileError where it cannot write.

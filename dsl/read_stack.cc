@@ -179,6 +179,7 @@ class StackReader {
   }
 
   void readStartJitter(const CheckedElement& start) {
+    if (!start.values.has("jitter") || !start.values.has("frame-jitter")) return;  // what is no number was told already
     StartJitter& jitter = stack_.start_jitter;
     const auto& joints = start.values.numbers("jitter");
     const auto moving = static_cast<std::size_t>(jitter.joints.size());

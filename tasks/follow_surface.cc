@@ -34,6 +34,9 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "approach", .type = ValueType::reals, .unit = "1", .default_text = "0 0 -1",
        .description = "Direction of the first approach, world axes.", .count = 3,
        .in_world = InWorld::directions},
+      {.name = "lean", .type = ValueType::real, .unit = "rad",
+       .description = "How far the normal axis may lean from `approach`, at most; not given: as far as the surface does.",
+       .lower = 0, .upper = 3.1, .lower_open = true},
       {.name = "approach-speed", .type = ValueType::real, .unit = "m/s", .default_text = "0.02",
        .description = "Speed along the last normal while nothing touches.", .lower = 0},
       {.name = "reach", .type = ValueType::real, .unit = "m", .default_text = "0.03",
@@ -57,6 +60,15 @@ void FollowSurface::registerIn(Registry& registry) {
       {.name = "heading", .type = ValueType::reals, .unit = "1",
        .description = "Direction that the forward axis keeps, world axes; not given: it turns freely.", .count = 3,
        .in_world = InWorld::directions},
+      {.name = "headings", .type = ValueType::points, .unit = "1",
+       .description = "Instead of `heading`: one direction a key, on the way to it.", .count = 3,
+       .in_world = InWorld::directions},
+      {.name = "turn-reach", .type = ValueType::real, .unit = "rad",
+       .description = "How far ahead of the hand its heading runs, at most, less as the pull fades; not given: all the way.",
+       .lower = 0, .lower_open = true},
+      {.name = "turn-avoids", .type = ValueType::reals, .unit = "1",
+       .description = "Direction through which the heading does not turn, world axes: it takes the other way round.",
+       .count = 3, .in_world = InWorld::directions},
       {.name = "tilt", .type = ValueType::real, .unit = "rad", .default_text = "0",
        .description = "Lean of the forward axis into the surface.", .lower = -1.5, .upper = 1.5},
       {.name = "yield-from", .type = ValueType::real, .unit = "N",
@@ -112,7 +124,9 @@ FollowSurface::FollowSurface(const BuildContext& context)
       stall_progress_(context.values.real("stall-progress")),
       has_heading_(context.values.has("heading")),
       heading_W_(has_heading_ ? direction(context, "heading") : Eigen::Vector3d::Zero()),
-      normal_W_(direction(context, "approach")) {
+      approach_W_(direction(context, "approach")),
+      normal_W_(approach_W_) {
+  if (context.values.has("lean")) lean_ = context.values.real("lean");
   if (context.values.has("along") && context.values.has("towards"))
     throw ElementError("along", "where to: give along, key positions, or towards, a signal's place, not both");
   if (context.values.has("towards")) {
@@ -134,13 +148,35 @@ FollowSurface::FollowSurface(const BuildContext& context)
     yield_until_ = context.values.has("yield-until") ? context.values.real("yield-until") : 1.5 * yield_from_;
     if (!(yield_until_ > yield_from_)) throw ElementError("yield-until", "yield-until must be greater than yield-from");
   }
-  if (yaw_stiffness_ > 0 && !has_heading_) throw ElementError("yaw-stiffness", "yaw-stiffness needs a heading");
+  if (context.values.has("headings")) {
+    if (has_heading_) throw ElementError("headings", "give heading, one for all keys, or headings, one for each, not both");
+    const std::vector<double>& numbers = context.values.numbers("headings");
+    for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
+      headings_W_.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+      if (headings_W_.back().norm() < 1e-9) throw ElementError("headings", "a heading must not be a zero vector");
+    }
+    if (headings_W_.size() != keys_W_.size())
+      throw ElementError("headings", "headings has " + std::to_string(headings_W_.size()) + " directions, expected " +
+                                         std::to_string(keys_W_.size()) + ", one a key");
+    has_heading_ = true;
+  }
+  if (context.values.has("turn-reach")) turn_reach_ = context.values.real("turn-reach");
+  if (context.values.has("turn-avoids")) turn_avoids_W_ = direction(context, "turn-avoids");
+  if (yaw_stiffness_ > 0 && !has_heading_ && !towards_) throw ElementError("yaw-stiffness", "yaw-stiffness needs a heading");
 }
 
 const Eigen::Vector3d& FollowSurface::key() const {
   if (towards_) return towards_->position_W;
   if (keys_W_.empty()) return reference_W_;
   return keys_W_[std::min<std::size_t>(key_index_, keys_W_.size() - 1)];
+}
+
+// Zero: none.
+Eigen::Vector3d FollowSurface::heading() const {
+  if (yaw_stiffness_ <= 0) return Eigen::Vector3d::Zero();
+  if (!headings_W_.empty()) return headings_W_[std::min<std::size_t>(key_index_, headings_W_.size() - 1)];
+  if (towards_ && !has_heading_) return towards_->known ? towards_->heading_W : Eigen::Vector3d::Zero();
+  return heading_W_;
 }
 
 void FollowSurface::updateNormal(double dt) {
@@ -173,22 +209,52 @@ void FollowSurface::updatePull(double dt) {
   pull_ = 1 - s * s * (3 - 2 * s);
 }
 
+Eigen::Vector3d FollowSurface::wantedNormal() const {
+  const Eigen::Vector3d axis = approach_W_.cross(normal_W_);
+  const double leaned = std::atan2(axis.norm(), approach_W_.dot(normal_W_));
+  if (leaned <= lean_ || axis.norm() < 1e-9) return normal_W_;
+  return Eigen::AngleAxisd(lean_, axis.normalized()) * approach_W_;
+}
+
+// Angle about the normal from one direction to another.
+double FollowSurface::turnFrom(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W) const {
+  const Eigen::Vector3d normal_W = wantedNormal();
+  const auto angle = [&](const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) {
+    const Eigen::Vector3d a = a_W - a_W.dot(normal_W) * normal_W;
+    return std::atan2(normal_W.dot(a.cross(b_W)), a.dot(b_W));
+  };
+  if (!turn_avoids_W_) return angle(from_W, to_W);
+  return angle(-*turn_avoids_W_, to_W) - angle(-*turn_avoids_W_, from_W);
+}
+
 Eigen::Matrix3d FollowSurface::wantedOrientation(const Eigen::Matrix3d& R_WH) const {
-  const Eigen::Vector3d ahead = has_heading_ && yaw_stiffness_ > 0 ? heading_W_ : Eigen::Vector3d(R_WH.col(1));
-  Eigen::Vector3d forward = ahead - ahead.dot(normal_W_) * normal_W_;
+  const Eigen::Vector3d normal_W = wantedNormal();
+  Eigen::Vector3d ahead = heading();
+  if (ahead.isZero()) ahead = R_WH.col(1);
+  Eigen::Vector3d forward = ahead - ahead.dot(normal_W) * normal_W;
   if (forward.norm() < 1e-6) {
     // The hand points along the normal: any direction within the surface will do; keep the third axis.
-    forward = R_WH.col(2).cross(normal_W_);
+    forward = R_WH.col(2).cross(normal_W);
   }
   forward.normalize();
-  const Eigen::Vector3d leaned_forward = std::cos(tilt_) * forward + std::sin(tilt_) * normal_W_;
-  const Eigen::Vector3d leaned_normal = std::cos(tilt_) * normal_W_ - std::sin(tilt_) * forward;
+  const double turn = turnFrom(R_WH.col(1), forward), most = pull_ * turn_reach_;
+  if (std::isfinite(turn_reach_) && std::abs(turn) > most)
+    forward = Eigen::AngleAxisd(std::copysign(most, turn) - turn, normal_W) * forward;
+  const Eigen::Vector3d leaned_forward = std::cos(tilt_) * forward + std::sin(tilt_) * normal_W;
+  const Eigen::Vector3d leaned_normal = std::cos(tilt_) * normal_W - std::sin(tilt_) * forward;
   Eigen::Matrix3d R_WR;
   R_WR << leaned_normal, leaned_forward, leaned_normal.cross(leaned_forward);
   return R_WR;
 }
 
-void FollowSurface::advanceKey(double time, double tangential_distance) {
+// What the hand must still turn, beyond a turn-reach.
+double FollowSurface::leftToTurn(const Eigen::Matrix3d& R_WH) const {
+  const Eigen::Vector3d normal_W = wantedNormal(), ahead = heading();
+  const Eigen::Vector3d wanted = ahead - ahead.dot(normal_W) * normal_W;
+  return wanted.norm() > 1e-6 ? std::max(std::abs(turnFrom(R_WH.col(1), wanted)) - turn_reach_, 0.0) : 0;
+}
+
+void FollowSurface::advanceKey(double time, double way) {
   if (towards_) {                                                  // who names the places also says when to go on
     key_index_ = towards_->number;
     return;
@@ -196,17 +262,21 @@ void FollowSurface::advanceKey(double time, double tangential_distance) {
   if (key_index_ >= static_cast<int>(keys_W_.size())) return;
   if (!key_started_) {
     key_started_ = true;
-    nearest_ = tangential_distance;
+    key_start_time_ = time;
+    nearest_ = way;
     progress_time_ = time;
   }
-  if (tangential_distance < nearest_ - stall_progress_) {
-    nearest_ = tangential_distance;
+  if (way < nearest_ - stall_progress_) {
+    nearest_ = way;
     progress_time_ = time;
   }
-  const bool passed = !contacts_.contacts.empty() && tangential_distance < key_threshold_;
+  const bool passed = !contacts_.contacts.empty() && way < key_threshold_;
   const bool stalled = !passed && time - progress_time_ > stall_time_ && !contacts_.contacts.empty();
   if (passed) ++keys_passed_;
-  if (stalled) ++keys_given_up_;
+  if (stalled) {
+    ++keys_given_up_;
+    given_up_s_ += time - key_start_time_;
+  }
   if (passed || stalled) {
     ++key_index_;
     key_started_ = false;
@@ -230,7 +300,9 @@ void FollowSurface::doUpdate(const Tick& tick, TickTask& rows) {
   const Eigen::Vector3d x_e = way * (pull_ * reach_ / std::max(distance_, near_));
   key_W_ = key();
   reference_W_ = p_W + x_e;
-  advanceKey(tick.time, distance_);
+  // With a heading of its own, a key is only there once the hand has turned: a turn-reach counts as much as a reach.
+  const bool turns = !headings_W_.empty() && yaw_stiffness_ > 0 && std::isfinite(turn_reach_);
+  advanceKey(tick.time, distance_ + (turns ? leftToTurn(R_WH) * reach_ / turn_reach_ : 0));
 
   const auto across = [&](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - normal_W_ * normal_W_.dot(v)); };
   const Eigen::Vector3d v_W = velocity.head<3>();
@@ -256,6 +328,8 @@ void FollowSurface::doArchive(Archive& archive) {
   archive("nearest", nearest_);
   archive("progress-time", progress_time_);
   archive("key-started", key_started_);
+  archive("key-start-time", key_start_time_);
+  archive("given-up-s", given_up_s_);
   archive("keys-passed", keys_passed_);
   archive("keys-given-up", keys_given_up_);
   archive("key-number", key_number_);
@@ -285,6 +359,7 @@ void FollowSurface::metrics(std::vector<Metric>& metrics) const {
   if (towards_) return;
   metrics.push_back({"keys_passed", keys_passed_});
   metrics.push_back({"keys_given_up", keys_given_up_});
+  metrics.push_back({"keys_given_up_s", given_up_s_});
   metrics.push_back({"keys_total", static_cast<double>(keys_W_.size())});
   metrics.push_back({"last_key_time_s", last_key_time_});
 }

@@ -1,6 +1,8 @@
 #include "tasks/posture.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace tactus::tasks {
@@ -23,6 +25,11 @@ void Posture::registerIn(Registry& registry) {
        .description = "d; one number, or one a joint.", .lower = 0},
       {.name = "q", .type = ValueType::reals, .unit = "rad",
        .description = "Reference, one number a joint; not given: the configuration of the first tick."},
+      {.name = "swing", .type = ValueType::reals, .unit = "rad", .default_text = "0",
+       .description = "The reference swings about itself by so much, from time 0; one number, or one a joint. Joints of "
+                      "opposite sign swing against each other."},
+      {.name = "swing-rate", .type = ValueType::real, .unit = "Hz", .default_text = "0.5",
+       .description = "How often it does.", .lower = 0},
       {.name = "on", .type = ValueType::port, .default_text = "touch.all",
        .description = "For joints=\"free\": the contacts C.", .port_type = "contact-set"},
       {.name = "desired", .type = ValueType::port, .default_text = "touch.desired",
@@ -77,6 +84,8 @@ Posture::Posture(const BuildContext& context, std::vector<int> joints)
       joints_(std::move(joints)),
       stiffness_(onePerJoint(context, "stiffness", joints_.size())),
       damping_(onePerJoint(context, "damping", joints_.size())),
+      swing_(onePerJoint(context, "swing", joints_.size())),
+      swing_frequency_(2 * std::numbers::pi * context.values.real("swing-rate")),
       reference_(Eigen::VectorXd::Zero(joints_.size())),
       has_reference_(context.values.has("q")) {
   if (has_reference_) reference_ = onePerJoint(context, "q", joints_.size());
@@ -119,15 +128,17 @@ void Posture::doUpdate(const Tick& tick, TickTask& rows) {
       touched_ = false;
     }
   }
+  const double swung = std::sin(swing_frequency_ * tick.time);
+  const double swing_speed = swing_frequency_ * std::cos(swing_frequency_ * tick.time);
   rows.rows = 0;
   error_ = 0;
   for (int k = 0; k < static_cast<int>(joints_.size()); ++k) {
     if (!isFree(k)) continue;
     const int i = joints_[k];
-    const double away = reference_[k] - tick.robot.q()[i];
+    const double away = reference_[k] + swing_[k] * swung - tick.robot.q()[i];
     rows.jacobian.row(rows.rows).setZero();
     rows.jacobian(rows.rows, i) = 1;
-    rows.force[rows.rows] = stiffness_[k] * away - damping_[k] * tick.robot.qd()[i];
+    rows.force[rows.rows] = stiffness_[k] * away + damping_[k] * (swing_[k] * swing_speed - tick.robot.qd()[i]);
     ++rows.rows;
     error_ = std::max(error_, std::abs(away));
   }

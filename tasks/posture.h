@@ -6,11 +6,13 @@
 
 namespace tactus::tasks {
 
-/// `posture`: a spring and damper on joints, F = k (q_r − q) − d q̇, one equality row J = e_iᵀ a joint.
+/// `posture`: a spring and damper on joints, F = k (q_r − q) + d (q̇_r − q̇), one equality row J = e_iᵀ a joint.
 ///
 /// With joints="free" it acts on the set K of 4.3.1: joints whose kinematic chains (from the base through the joint
 /// to a fingertip) carry no contact and no desired contact, and all joints once nothing has been touched for `delay`.
-/// `among` narrows that to some joints.  The reference is `q`, else the configuration of the first tick.
+/// `among` narrows that to some joints.  The reference q_r stands at q_0, which is `q`, else the configuration of the first
+/// tick, or swings about it: q_r = q_0 + a sin 2πft, a `swing`, f `swing-rate`.  Fingers that swing to the side meet what
+/// lies between the lines that they would draw otherwise.
 class Posture final : public control::Task {
  public:
   explicit Posture(const control::BuildContext& context);
@@ -27,7 +29,9 @@ class Posture final : public control::Task {
 
   std::vector<int> joints_;
   Eigen::VectorXd stiffness_, damping_;                            ///< by position in joints_
-  Eigen::VectorXd reference_;                                      ///< by position in joints_
+  Eigen::VectorXd swing_;                                          ///< a, rad, by position in joints_
+  double swing_frequency_;                                         ///< 2πf, rad/s
+  Eigen::VectorXd reference_;                                      ///< q_0, by position in joints_
   bool has_reference_ = false;
   // For joints="free" only:
   const control::ContactSet* contacts_ = nullptr;

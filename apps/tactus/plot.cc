@@ -161,8 +161,8 @@ class Frame {
 /// At most two points a pixel: the least and the largest value of each bucket, so that no peak is lost.  A bucket
 /// without a value to draw is a gap.
 Line thinned(const Line& line, size_t buckets) {
-  if (line.x.size() <= 2 * buckets) return line;
-  Line thin{line.label, line.colour, {}, {}};
+  if (line.x.size() <= 2 * buckets || !line.lower.empty()) return line;
+  Line thin{line.label, line.colour, {}, {}, {}, {}};
   const auto keep = [&](size_t i) {
     thin.x.push_back(line.x[i]);
     thin.y.push_back(line.y[i]);
@@ -189,7 +189,8 @@ Line thinned(const Line& line, size_t buckets) {
 LinePlot inDecades(LinePlot plot) {
   const auto logarithm = [](double value) { return value > 0 ? std::log10(value) : NAN; };
   for (Line& line : plot.lines)
-    for (double& value : line.y) value = logarithm(value);
+    for (std::vector<double>* values : {&line.y, &line.lower, &line.upper})
+      for (double& value : *values) value = logarithm(value);
   if (plot.wanted) plot.wanted = logarithm(*plot.wanted);
   plot.from_zero = false;
   return plot;
@@ -214,6 +215,18 @@ std::string path(const Line& line, const Frame& frame) {
   endPiece();
   return "<path d='" + d + "' fill='none' stroke='" + line.colour +
          "' stroke-width='1.4' stroke-linejoin='round' stroke-linecap='round'/>\n";
+}
+
+/// The ground between the bounds of a line's band, over the points where it has both.
+std::string band(const Line& line, const Frame& frame) {
+  std::string there, back;
+  for (size_t i = 0; i < line.lower.size(); ++i) {
+    if (!isDrawn(line.x[i]) || !isDrawn(line.lower[i]) || !isDrawn(line.upper[i])) continue;
+    there += (there.empty() ? 'M' : 'L') + pair(frame.px_x(line.x[i]), frame.px_y(line.upper[i]));
+    back = 'L' + pair(frame.px_x(line.x[i]), frame.px_y(line.lower[i])) + back;
+  }
+  if (there.empty()) return "";
+  return "<path d='" + there + back + "Z' fill='" + line.colour + "' fill-opacity='0.18' stroke='none'/>\n";
 }
 
 /// Viridis, by linear interpolation between nine of its colours.
@@ -309,7 +322,8 @@ std::string draw(const LinePlot& given, const Box& box) {
   Range x, y;
   for (const Line& line : plot.lines) {
     for (const double value : line.x) x.add(value);
-    for (const double value : line.y) y.add(value);
+    for (const std::vector<double>* values : {&line.y, &line.lower, &line.upper})
+      for (const double value : *values) y.add(value);
   }
   if (plot.wanted) y.add(*plot.wanted);
   if (plot.from_zero) y.add(0);
@@ -343,6 +357,7 @@ std::string draw(const LinePlot& given, const Box& box) {
   const double extra = key_y - box.y - 20;
   const Frame frame({box.x, box.y + extra, box.width, box.height - extra}, x, y, plot.log_y);
   std::string svg = frame.axes(plot.title, plot.x_label, plot.y_label);
+  for (const Line& line : plot.lines) svg += band(line, frame);
   for (const Line& line : plot.lines) svg += path(thinned(line, static_cast<size_t>(frame.area().width)), frame);
   if (wanted)
     svg += "<path d='M" + px(frame.area().x) + " " + px(frame.px_y(*plot.wanted)) + "h" + px(frame.area().width) +

@@ -9,7 +9,6 @@
 #include "framework/control/element_values.h"
 #include "framework/runtime/faulty_drives.h"
 #include "framework/runtime/feature_truth.h"
-#include "framework/runtime/temporary_folder.h"
 #include "sim/simbody_plant.h"
 
 namespace tactus::app {
@@ -77,7 +76,7 @@ Session::Session(dsl::Stack stack, const control::Registry& registry)
   contacts_ = std::make_unique<runtime::ContactMetrics>(static_cast<int>(stack_.robot.links.size()),
                                                         static_cast<int>(scene_.objects.size()), desiredLinks(),
                                                         !stack_.robot.self_contact.empty());
-  measures_ = std::make_unique<runtime::Measures>(dsl::makeMeasures(stack_, registry_, *controller_, scene_));
+  measures_ = std::make_unique<runtime::Measures>(dsl::makeMeasures(stack_, registry_, *controller_, scene_, stack_.start(stack_.run.seed)));
   if (!stack_.run.count_while.empty()) contacts_->countWhile(findScalar(stack_.run.count_while));
   for (size_t i = 0; i < stack_.signals.size() && !touched_points_; ++i) {
     touched_points_ = findPort<control::TouchedPoints>(i, "points");
@@ -229,7 +228,6 @@ std::vector<control::Metric> Session::metrics() const {
     for (const control::NamedTask& named : level.tasks) named.task->metrics(metrics);
   }
   for (const control::NamedSignal& named : controller_->signals()) named.signal->metrics(metrics);
-  for (const auto& recorder : recorders_) recorder->metrics(metrics);
   if (touched_points_) metrics.push_back({"points_touched", static_cast<double>(touched_points_->points.size())});
   for (const SoughtFeature& feature : features_) {
     for (control::Metric& metric : runtime::featureMetrics(feature.name, *feature.estimate, feature.truth_W)) {
@@ -242,12 +240,7 @@ std::vector<control::Metric> Session::metrics() const {
 
 std::vector<std::string> Session::metricNames() const {
   std::vector<std::string> names;
-  std::vector<control::Metric> known = metrics();
-  if (recorders_.empty() && !stack_.run.recorders.empty()) {
-    const runtime::TemporaryFolder folder;
-    for (const auto& recorder : dsl::makeRecorders(stack_, registry_, *controller_, folder.path)) recorder->metrics(known);
-  }
-  for (const control::Metric& metric : known) names.push_back(metric.name);
+  for (const control::Metric& metric : metrics()) names.push_back(metric.name);
   for (const SoughtFeature& feature : features_) {
     if (!feature.truth_W) continue;
     control::FeatureEstimate found = *feature.estimate;

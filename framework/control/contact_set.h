@@ -51,6 +51,7 @@ struct Place {
   bool known = false;                                              ///< false: nowhere in particular
   int number = 0;                                                  ///< rises with each new place
   Eigen::Vector3d position_W = Eigen::Vector3d::Zero();            ///< m
+  Eigen::Vector3d heading_W = Eigen::Vector3d::Zero();             ///< where to point on the way; zero: anywhere
 };
 
 /// A fixed set of links, e.g. those that a contacts signal calls desired.

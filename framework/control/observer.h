@@ -32,8 +32,6 @@ class Observer {
   virtual void observe(const ObservedTick& tick) = 0;
   /// Instead of `observe`.
   virtual void broken(const BrokenTick&) {}
-  /// Figures of the run so far.
-  virtual void metrics(std::vector<Metric>&) const {}
   /// After the last tick, however the run ended: write what is left.
   virtual void close() {}
 };

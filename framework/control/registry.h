@@ -39,7 +39,7 @@ class ElementError : public std::runtime_error {
   std::string text;                                                ///< that stands there
 };
 
-/// What a factory may look at while a stack is compiled.
+/// What a factory may look at while a stack is compiled, and no longer: what it keeps of robot and model, it copies.
 class BuildContext {
  public:
   using PortLookup = std::function<const void*(const std::string& attribute, const std::string& reference,
@@ -105,22 +105,20 @@ struct SensorContext : BuildContext {
 struct MeasureContext : BuildContext {
   using BackEndMaker = std::function<std::unique_ptr<BackEnd>()>;
   MeasureContext(BuildContext context, const Controller& controller, const description::Scene& scene,
-                 BackEndMaker another_back_end = {})
-      : BuildContext(std::move(context)), controller(controller), scene(scene),
+                 const Eigen::VectorXd& start_q, BackEndMaker another_back_end = {})
+      : BuildContext(std::move(context)), controller(controller), scene(scene), start_q(start_q),
         another_back_end(std::move(another_back_end)) {}
   const Controller& controller;                                    ///< before its first tick; outlives the measure
   const description::Scene& scene;                                 ///< as the run's seed drew it; outlives the measure
+  const Eigen::VectorXd& start_q;                                  ///< dof, likewise drawn
   BackEndMaker another_back_end;                                   ///< like the controller's; null without a recipe
 };
 
 /// What the factory of a recorder may look at; ports are those of the controller's signals.
 struct RecorderContext : BuildContext {
-  RecorderContext(BuildContext context, const Controller& controller, const description::Scene& scene,
-                  const Eigen::VectorXd& start_q, std::string folder)
-      : BuildContext(std::move(context)), controller(controller), scene(scene), start_q(start_q), folder(std::move(folder)) {}
+  RecorderContext(BuildContext context, const Controller& controller, std::string folder)
+      : BuildContext(std::move(context)), controller(controller), folder(std::move(folder)) {}
   const Controller& controller;                                    ///< before its first tick; outlives the recorder
-  const description::Scene& scene;                                 ///< as the run's seed drew it
-  const Eigen::VectorXd& start_q;                                  ///< dof, likewise
   std::string folder;                                              ///< of the run: files of a recorder go there
 };
 

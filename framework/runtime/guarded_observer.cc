@@ -43,8 +43,4 @@ void GuardedObserver::close() {
   guarded([&] { observer_->close(); });
 }
 
-void GuardedObserver::metrics(std::vector<control::Metric>& metrics) const {
-  if (fault_.empty()) observer_->metrics(metrics);
-}
-
 }  // namespace tactus::runtime

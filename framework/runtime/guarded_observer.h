@@ -17,7 +17,6 @@ class GuardedObserver final : public control::Observer {
   void observe(const control::ObservedTick& tick) override;
   void broken(const control::BrokenTick& tick) override;
   void close() override;
-  void metrics(std::vector<control::Metric>& metrics) const override;
 
   const std::string& name() const { return name_; }
   /// Why it was switched off; "" while it was not.

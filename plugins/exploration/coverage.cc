@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tactus::exploration {
 
 using namespace control;
 
 namespace {
-constexpr double row_interval = 0.5;                               // s
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 }
 
 void Coverage::registerIn(Registry& registry) {
@@ -32,81 +33,72 @@ void Coverage::registerIn(Registry& registry) {
       {.name = "clear", .type = ValueType::links, .default_text = "none",
        .description = "Links that must touch nothing while one of the others is there.", .choices = {"none"}},
   };
-  registry.addRecorder(row, [](const RecorderContext& context) { return std::make_unique<Coverage>(context); });
+  registry.addMeasure(row, [](const MeasureContext& context) { return std::make_unique<Coverage>(context); });
 }
 
-Coverage::Coverage(const RecorderContext& context)
-    : touched_(context.port<TouchedPoints>("from")),
-      robot_(context.robot),
-      model_(robot_),
-      scene_(context.scene),
-      start_q_(context.start_q),
-      count_(context.values.integer("samples")),
-      radius_(context.values.real("radius")),
-      folder_(context.folder),
-      file_(folder_ + "/coverage.csv", {"time", "coverage"}) {
-  for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
-    if (!context.values.has("of") || scene_.objects[static_cast<std::size_t>(i)].name == context.values.text("of"))
-      objects_.push_back(i);
-  reach_.links = context.frames("links");
-  reach_.clear = context.frames("clear");
+bool Coverage::Point::upward() const { return sample.normal_W.z() >= std::sqrt(0.5); }
+
+Coverage::Coverage(const MeasureContext& context)
+    : touched_(context.port<TouchedPoints>("from")), radius_(context.values.real("radius")), half_covered_s_(none) {
+  ReachOptions options;
+  options.links = context.frames("links");
+  options.clear = context.frames("clear");
   const Eigen::Vector3d axis = context.values.vector3("pad-axis");
   if (axis.norm() < 1e-9) throw ElementError("pad-axis", "pad-axis must not be a zero vector");
-  reach_.pad_axis = axis.normalized();
+  options.pad_axis = axis.normalized();
+  Reach reach(context.robot, context.scene, context.model, context.start_q, options);
+  const int count = context.values.integer("samples");
+  for (int i = 0; i < static_cast<int>(context.scene.objects.size()); ++i) {
+    const description::Object& object = context.scene.objects[static_cast<std::size_t>(i)];
+    if (context.values.has("of") && object.name != context.values.text("of")) continue;
+    for (const SurfaceSample& sample : sampleSurface(context.scene, i, count)) points_.push_back({sample, reach(sample)});
+  }
+  reachable_ = static_cast<int>(std::count_if(points_.begin(), points_.end(), [](const Point& p) { return p.reachable; }));
+  covered_ = reachable_ > 0 ? 0 : none;
 }
 
-void Coverage::sample() {
-  Reach reach(robot_, scene_, model_, start_q_, reach_);
-  sampled_ = true;
-  for (int object : objects_)
-    for (const SurfaceSample& sample : sampleSurface(scene_, object, count_)) {
-      points_.push_back({sample, reach(sample)});
-      reachable_ += points_.back().reachable;
-    }
-}
-
-double Coverage::covered() const {
-  return reachable_ > 0 ? static_cast<double>(covered_reachable_) / reachable_ : std::numeric_limits<double>::quiet_NaN();
-}
-
-void Coverage::observe(const ObservedTick& tick) {
-  const double time = tick.truth.time;
-  if (!sampled_) sample();
+void Coverage::doObserve(const ObservedTick& tick) {
+  if (seen_ == touched_.points.size()) return;
   for (; seen_ < touched_.points.size(); ++seen_) {
     const Eigen::Vector3d& touched_W = touched_.points[seen_].point_W;
     for (Point& point : points_) {
-      if (point.covered_at >= 0 || (point.sample.point_W - touched_W).squaredNorm() > radius_ * radius_) continue;
-      point.covered_at = touched_.points[seen_].time;
-      ++covered_all_;
-      covered_reachable_ += point.reachable;
+      if (!point.covered && (point.sample.point_W - touched_W).squaredNorm() <= radius_ * radius_) point.covered = true;
     }
   }
-  if (std::isnan(half_time_) && covered() >= 0.5) half_time_ = time;
-  if (time < next_row_ - 1e-9) return;
-  next_row_ = time + row_interval;
-  file_ << time << (reachable_ > 0 ? covered() : 0);
-  file_.endRow();
+  covered_ = covered([](const Point& point) { return point.reachable; });
+  if (std::isnan(half_covered_s_) && covered_ >= 0.5) half_covered_s_ = tick.truth.time;
 }
 
-void Coverage::close() {
-  file_.close();
-  runtime::CsvWriter surface(folder_ + "/surface.csv",
-                             {"x", "y", "z", "normal_x", "normal_y", "normal_z", "reachable", "covered_at"});
+template <class Predicate>
+double Coverage::covered(Predicate counts) const {
+  int all = 0, met = 0;
   for (const Point& point : points_) {
-    for (const Eigen::Vector3d* v : {&point.sample.point_W, &point.sample.normal_W})
-      for (int i = 0; i < 3; ++i) surface << (*v)[i];
-    surface << (point.reachable ? 1.0 : 0.0) << point.covered_at;
-    surface.endRow();
+    if (!counts(point)) continue;
+    ++all;
+    met += point.covered;
   }
-  surface.close();
+  return all > 0 ? static_cast<double>(met) / all : none;
 }
+
+void Coverage::doArchive(Archive& archive) {
+  std::vector<bool> covered_points;
+  for (const Point& point : points_) covered_points.push_back(point.covered);
+  archive("covered-points", covered_points);
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].covered = covered_points[i];
+  archive("seen", seen_);
+  archive("covered", covered_);
+  archive("half-covered", half_covered_s_);
+}
+
+void Coverage::columns(std::vector<LogColumn>& columns) const { columns.push_back({"covered", &covered_}); }
 
 void Coverage::metrics(std::vector<Metric>& metrics) const {
-  const double all = std::max<double>(1, static_cast<double>(points_.size()));
-  metrics.push_back({"coverage", covered()});
-  metrics.push_back({"coverage_all", covered_all_ / all});
-  metrics.push_back({"reachable", reachable_ / all});
-  metrics.push_back({"coverage_half_s", half_time_});
+  metrics.push_back({"covered", covered_});
+  metrics.push_back({"covered_upward", covered([](const Point& point) { return point.reachable && point.upward(); })});
+  metrics.push_back({"covered_sideward", covered([](const Point& point) { return point.reachable && !point.upward(); })});
+  metrics.push_back({"covered_all", covered([](const Point&) { return true; })});
+  metrics.push_back({"reachable", points_.empty() ? none : static_cast<double>(reachable_) / static_cast<double>(points_.size())});
+  metrics.push_back({"half_covered_s", half_covered_s_});
 }
 
 }  // namespace tactus::exploration

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int directions = 8;
 constexpr int newton_steps = 4;
+constexpr std::size_t most_met = 20000;
 constexpr int check_every = 16;                                    // looks, at how well the goal is known
 constexpr double on_surface = 0.2;                                 // of the mean, where a place counts as on it
 const Vector3d nowhere = Vector3d::Constant(1e9);
@@ -56,8 +57,18 @@ void SurfaceMap::registerIn(Registry& registry) {
       {.name = "known", .type = ValueType::real, .unit = "1", .default_text = "0.4",
        .description = "A place is known when its standard deviation, over the prior one, is below this.", .lower = 0,
        .upper = 1},
+      {.name = "met-within", .type = ValueType::real, .unit = "m",
+       .description = "And when a touched point is as near as this; not given: however far they are.", .lower = 0,
+       .lower_open = true},
       {.name = "nearness", .type = ValueType::real, .unit = "1/m", .default_text = "2",
        .description = "What a metre of way counts against standard deviation.", .lower = 0},
+      {.name = "heading", .type = ValueType::choice, .default_text = "any",
+       .description = "How the frame shall point when it gets to a place: anyhow, or away from the middle of what is known.",
+       .choices = {"any", "outwards"}},
+      {.name = "forward-axis", .type = ValueType::reals, .unit = "1", .default_text = "0 0 1",
+       .description = "Axis of the frame that then points there.", .count = 3},
+      {.name = "clearance", .type = ValueType::real, .unit = "m", .default_text = "0.06",
+       .description = "Places this near to one that was given up are left out for a while.", .lower = 0},
       {.name = "patience", .type = ValueType::real, .unit = "s", .default_text = "2",
        .description = "A place is given up after so long without progress.", .lower = 0, .lower_open = true},
       {.name = "progress", .type = ValueType::real, .unit = "m", .default_text = "0.005",
@@ -84,8 +95,11 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
       patience_(context.values.real("patience")),
       progress_(context.values.real("progress")),
       every_(context.values.integer("every")),
+      clearance_(context.values.real("clearance")),
+      outwards_(context.values.text("heading") == "outwards"),
       facing_W_(context.values.vector3("facing")),
       first_W_(context.values.vector3("first")),
+      forward_F_(context.values.vector3("forward-axis")),
       capacity_(context.values.integer("capacity")),
       process_({context.values.real("length"), 1, context.values.real("noise")}, 1, 2 * capacity_) {
   const std::vector<double>& within = context.values.numbers("within");
@@ -94,6 +108,7 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
     box_W_[1][i] = within[static_cast<std::size_t>(i) + 3];
     if (!(box_W_[0][i] < box_W_[1][i])) throw ElementError("within", "within names a lower and an upper corner of a box");
   }
+  if (forward_F_.norm() < 1e-9) throw ElementError("forward-axis", "forward-axis must not be a zero vector");
   if (facing_W_.norm() < 1e-9) throw ElementError("facing", "facing must not be a zero vector");
   facing_W_.normalize();
   if (first_W_.norm() < 1e-9 || std::abs(first_W_.normalized().dot(facing_W_)) > 1e-6)
@@ -102,6 +117,10 @@ SurfaceMap::SurfaceMap(const BuildContext& context)
   points_W_.reserve(static_cast<std::size_t>(capacity_));
   normals_W_.reserve(static_cast<std::size_t>(capacity_));
   left_W_.fill(nowhere);
+  if (context.values.has("met-within")) {
+    met_within_ = context.values.real("met-within");
+    met_W_.reserve(most_met);
+  }
 }
 
 void SurfaceMap::doUpdate(const Tick& tick) {
@@ -114,13 +133,20 @@ void SurfaceMap::doUpdate(const Tick& tick) {
   if (++tick_ >= every_) {
     tick_ = 0;
     if (!learn()) look();
-    if (has_goal_ && looked_ % check_every == 0) goal_uncertainty_ = uncertaintyAt(goal_W_);
+    if (has_goal_ && looked_ % check_every == 0) {
+      goal_uncertainty_ = uncertaintyAt(goal_W_);
+      goal_met_ = isMet(goal_W_);
+    }
   }
   followGoal(tick.time);
   next_.known = has_goal_;
+  next_.heading_W = heading_W_;
   if (has_goal_) {
-    const Vector3d p_W = tick.robot.framePose(frame_).translation();
-    next_.position_W = goal_W_ - (has_middle_ && !contacts_.contacts.empty() ? Vector3d(middle_W_ - p_W) : Vector3d::Zero());
+    const Eigen::Isometry3d X_WF = tick.robot.framePose(frame_);
+    Vector3d ahead_W = Vector3d::Zero();
+    if (has_middle_ && !contacts_.contacts.empty()) ahead_W = middle_W_ - X_WF.translation();
+    if (outwards_ && !heading_W_.isZero()) ahead_W = turnTo(X_WF.linear() * forward_F_) * ahead_W;
+    next_.position_W = goal_W_ - ahead_W;
   }
   n_points_ = static_cast<double>(points_W_.size());
 }
@@ -132,8 +158,10 @@ bool SurfaceMap::learn() {
     process_.observe(points_W_.back() - depth_ * normals_W_.back(), -1);
     return true;
   }
-  while (read_ < touched_.points.size() && static_cast<int>(points_W_.size()) < capacity_) {
+  while (read_ < touched_.points.size()) {
     const TouchedPoint& touched = touched_.points[read_++];
+    meet(touched.point_W);
+    if (static_cast<int>(points_W_.size()) == capacity_) continue;
     const auto isNear = [&](const Vector3d& kept) {
       return (kept - touched.point_W).squaredNorm() < spacing_ * spacing_;
     };
@@ -149,6 +177,19 @@ bool SurfaceMap::learn() {
 
 double SurfaceMap::uncertaintyAt(const Vector3d& p_W) {
   return std::sqrt(process_.variance(p_W)) / process_.covariance().deviation;
+}
+
+void SurfaceMap::meet(const Vector3d& p_W) {
+  if (met_within_ <= 0 || met_W_.size() >= most_met) return;
+  const double apart = 0.5 * met_within_;
+  const auto isNear = [&](const Vector3d& met) { return (met - p_W).squaredNorm() < apart * apart; };
+  if (std::none_of(met_W_.begin(), met_W_.end(), isNear)) met_W_.push_back(p_W);
+}
+
+bool SurfaceMap::isMet(const Vector3d& p_W) const {
+  if (met_within_ <= 0) return true;
+  return std::any_of(met_W_.begin(), met_W_.end(),
+                     [&](const Vector3d& met) { return (met - p_W).squaredNorm() < met_within_ * met_within_; });
 }
 
 bool SurfaceMap::placeAround(int point, int direction, Vector3d& place_W) const {
@@ -172,7 +213,7 @@ bool SurfaceMap::placeAround(int point, int direction, Vector3d& place_W) const 
   if ((place_W.array() < box_W_[0].array()).any() || (place_W.array() > box_W_[1].array()).any()) return false;
   if (gradient.normalized().dot(facing_W_) < facing_cosine_) return false;
   return std::none_of(left_W_.begin(), left_W_.end(),
-                      [&](const Vector3d& left) { return (left - place_W).squaredNorm() < step_ * step_; });
+                      [&](const Vector3d& left) { return (left - place_W).squaredNorm() < clearance_ * clearance_; });
 }
 
 void SurfaceMap::look() {
@@ -192,7 +233,7 @@ void SurfaceMap::look() {
   const int now = looked_++;
   if (!placeAround(now % count, now / count % directions, place_W)) return;
   const double uncertainty = uncertaintyAt(place_W);
-  if (uncertainty < known_) return;
+  if (uncertainty < known_ && isMet(place_W)) return;
   const double score = uncertainty - (has_middle_ ? nearness_ * (place_W - middle_W_).norm() : 0);
   if (score > best_.score) best_ = {true, score, uncertainty, place_W};
 }
@@ -205,27 +246,46 @@ void SurfaceMap::choose() {
   has_goal_ = true;
   goal_W_ = best_.point_W;
   goal_uncertainty_ = best_.uncertainty;
+  goal_met_ = false;
   best_ = {};
   looked_ = 0;
   nearest_ = 1e9;
+  goal_time_ = -1;
+  if (outwards_) headOutwards();
   ++next_.number;
+}
+
+void SurfaceMap::headOutwards() {
+  Vector3d middle_W = Vector3d::Zero();
+  for (const Vector3d& point_W : points_W_) middle_W += point_W / static_cast<double>(points_W_.size());
+  Vector3d out_W = goal_W_ - middle_W;
+  out_W -= out_W.dot(facing_W_) * facing_W_;
+  if (out_W.norm() > 0.5 * step_) heading_W_ = out_W.normalized();
+}
+
+// The rotation about `facing` that takes a direction to the heading.
+Eigen::Matrix3d SurfaceMap::turnTo(const Vector3d& forward_W) const {
+  const double angle = std::atan2(facing_W_.dot(forward_W.cross(heading_W_)), forward_W.dot(heading_W_));
+  return Eigen::AngleAxisd(angle, facing_W_).toRotationMatrix();
 }
 
 void SurfaceMap::followGoal(double time) {
   if (!has_goal_) return;
+  if (goal_time_ < 0) goal_time_ = time;
   const double distance = (goal_W_ - middle_W_).norm();
   if (distance < nearest_ - progress_ || contacts_.contacts.empty()) {
     if (!contacts_.contacts.empty()) nearest_ = distance;
     progress_time_ = time;
   }
-  if (goal_uncertainty_ < known_) return leaveGoal(true);
-  if (time - progress_time_ > patience_) leaveGoal(false);
+  if (goal_uncertainty_ < known_ && goal_met_) return leaveGoal(true, time);
+  if (time - progress_time_ > patience_) leaveGoal(false, time);
 }
 
-void SurfaceMap::leaveGoal(bool reached) {
+void SurfaceMap::leaveGoal(bool reached, double time) {
   has_goal_ = false;
   ++(reached ? reached_ : given_up_);
   if (reached) return;
+  given_up_s_ += time - goal_time_;
   left_W_[static_cast<std::size_t>(left_next_)] = goal_W_;
   left_next_ = (left_next_ + 1) % static_cast<int>(left_W_.size());
 }
@@ -242,6 +302,8 @@ void SurfaceMap::doArchive(Archive& archive) {
   archive.growing("points", points_W_);
   archive.growing("normals", normals_W_);
   archive("read", read_);
+  archive.growing("met", met_W_);
+  archive("goal-met", goal_met_);
   archive("owes-depth", owes_depth_);
   archive("tick", tick_);
   archive("looked", looked_);
@@ -250,6 +312,9 @@ void SurfaceMap::doArchive(Archive& archive) {
   archive("has-middle", has_middle_);
   archive("goal", goal_W_);
   archive("has-goal", has_goal_);
+  archive("heading", heading_W_);
+  archive("goal-time", goal_time_);
+  archive("given-up-s", given_up_s_);
   archive("nearest", nearest_);
   archive("progress-time", progress_time_);
   archive("goal-uncertainty", goal_uncertainty_);
@@ -282,6 +347,7 @@ void SurfaceMap::metrics(std::vector<Metric>& metrics) const {
   metrics.push_back({"map_points", n_points_});
   metrics.push_back({"places_reached", reached_});
   metrics.push_back({"places_given_up", given_up_});
+  metrics.push_back({"places_given_up_s", given_up_s_});
 }
 
 }  // namespace tactus::exploration

@@ -62,6 +62,30 @@ TEST(PlotCommand, OfWhatACutOffRunLeft) {
   EXPECT_THAT(tactus({"plot", logged.folder.write("b.csv", "time,x\n"), "x"}).out, HasSubstr("has no rows"));
 }
 
+TEST(PlotCommand, MeansOfAStudyInABandForEachCondition) {
+  const TemporaryFolder folder;
+  folder.write("stack.xml", contentOf(data("press.xml")));
+  const auto study = [&](const std::string& keep) {
+    const std::string file = folder.write(
+        keep + ".xml", "<study format=\"1\" name=\"s\" stack=\"" + data("press.xml") + "\" keep=\"" + keep +
+                           "\"><seeds from=\"1\" count=\"2\"/><backends names=\"null-space qp\"/></study>");
+    EXPECT_EQ(tactus({"study", file, "--jobs", "1", "--out", folder.file(keep)}).exit_code, 0);
+    return folder.file(keep);
+  };
+  const std::string runs = study("runs");
+  const Outcome outcome = tactus({"plot", runs, "contact/mean_N"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* text : {">contact/mean_N<", "null-space", "qp", ", n = 2<", "fill-opacity='0.18'", ">time (s)<"})
+    EXPECT_THAT(outcome.out, HasSubstr(text));
+  EXPECT_EQ(tactus({"plot", runs}).exit_code, 2) << "no column";
+  const Outcome unknown = tactus({"plot", runs, "contact/mean"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'contact/mean_N'?"));
+  const Outcome bare = tactus({"plot", study("metrics"), "contact/mean_N"});
+  EXPECT_EQ(bare.exit_code, 6);
+  EXPECT_THAT(bare.err, HasSubstr("the study keeps figures alone, no logs: run it with keep=\"runs\""));
+}
+
 TEST(PlotCommand, RefusesWhatItCannotDraw) {
   const Logged logged;
   const Outcome unknown = tactus({"plot", logged.run, "q/hipp"});

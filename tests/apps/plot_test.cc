@@ -26,6 +26,14 @@ void expectWellFormed(const std::string& svg) {
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
 }
 
+TEST(Plot, ABandIsClosedBelowItsLineAndWidensTheAxis) {
+  LinePlot plot{"", "", "", {{"", "blue", {0, 1, 2}, {1, 1, 1}, {0.5, 0, 0.5}, {1.5, 7, 1.5}}}, {}, "", true};
+  const std::string svg = svgDocument(600, 300, draw(plot, box));
+  expectWellFormed(svg);
+  EXPECT_THAT(svg, HasSubstr("Z' fill='blue' fill-opacity='0.18'"));
+  EXPECT_THAT(svg, HasSubstr(">6<")) << "the axis goes on to the upper bound";
+}
+
 TEST(Plot, LinesHaveTitleAndUnits) {
   LinePlot plot{"Forces", "time (s)", "force (N)", {{"mean", "blue", {0, 1, 2}, {0, 0.5, 0.4}}}, 0.5, "wanted", true};
   const std::string svg = svgDocument(600, 300, draw(plot, box));

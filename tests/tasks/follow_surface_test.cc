@@ -133,6 +133,79 @@ TEST_F(FollowSurface, RefusesToYieldBackwards) {
   }
 }
 
+TEST_F(FollowSurface, TurnsNoMoreThanItsTurnReachAheadOfTheHand) {
+  const auto yaw = [&](const std::string& heading, const std::string& turn_reach) {
+    Attributes more{{"heading", heading}, {"yaw-stiffness", "10"}, {"rotation-damping", "0"}, {"tilt", "0"}};
+    if (!turn_reach.empty()) more["turn-reach"] = turn_reach;
+    make(more);
+    world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+    update();
+    return -rows.force.segment<3>(3).z();
+  };
+  EXPECT_LT(yaw("0 1 0", ""), -10) << "more than a radian, to the left, about −z";
+  // The lean of 10 degrees and the turn add up to one rotation: its part about the normal is the turn's within 2 %.
+  EXPECT_NEAR(yaw("0 1 0", "0.2"), -2, 0.04);
+  EXPECT_NEAR(yaw("0 -1 0", "0.2"), 2, 0.04);
+}
+
+TEST_F(FollowSurface, TurnsTheOtherWayRoundRatherThanThroughWhatItAvoids) {
+  const auto yaw = [&](const std::string& heading) {
+    make({{"heading", heading}, {"yaw-stiffness", "10"}, {"turn-reach", "0.2"}, {"turn-avoids", "0 1 0"}, {"tilt", "0"}});
+    world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+    update();
+    return -rows.force.segment<3>(3).z();
+  };
+  EXPECT_LT(yaw("1 0.9 0"), -1) << "before it: to the left";
+  EXPECT_GT(yaw("-0.9 1 0"), 1) << "behind it: the long way, to the right";
+  EXPECT_GT(yaw("0 -1 0"), 1);
+}
+
+TEST_F(FollowSurface, AKeyWithAHeadingIsPassedWhenTheHandHasTurned) {
+  const auto passed = [&](const std::string& headings) {
+    make({{"headings", headings}, {"yaw-stiffness", "10"}, {"turn-reach", "0.3"}});
+    world.sensed.contacts = {world.contactOn("index_distal", {0, 0, -1}, 0.5)};
+    update();
+    update();
+    return column(*task, "keys_passed");
+  };
+  EXPECT_EQ(passed("1 0 0; 1 0 0; 1 0 0"), 1) << "the palm starts within 15 mm of the first key, pointing ahead";
+  EXPECT_EQ(passed("0 1 0; 1 0 0; 1 0 0"), 0);
+}
+
+TEST_F(FollowSurface, LeansOnlySoFar) {
+  const Eigen::Vector3d side = Eigen::Vector3d(-0.9, 0, -0.2).normalized();
+  const auto moment = [&](const std::string& lean) {
+    Attributes more{{"rotation-damping", "0"}, {"tilt", "0"}};
+    if (!lean.empty()) more["lean"] = lean;
+    make(more);
+    world.sensed.contacts = {world.contactOn("index_distal", side, 0.5)};
+    update();
+    return rows.force.segment<3>(3).norm();
+  };
+  world.feel();
+  const double way = std::acos(palm().linear().col(0).dot(side));
+  EXPECT_NEAR(moment(""), 10 * way, 1e-6);
+  EXPECT_NEAR(moment("3"), 10 * way, 1e-6) << "farther than the surface";
+  const Eigen::Vector3d down(0, 0, -1);
+  const Eigen::Vector3d least = Eigen::AngleAxisd(0.5, down.cross(side).normalized()) * down;
+  EXPECT_NEAR(moment("0.5"), 10 * std::acos(palm().linear().col(0).dot(least)), 0.05);
+}
+
+TEST_F(FollowSurface, RefusesHeadingsThatDoNotFitTheKeys) {
+  const auto refusal = [&](const Attributes& more) -> std::string {
+    try {
+      make(more);
+    } catch (const control::ElementError& error) {
+      return error.attribute + ": " + error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal({{"headings", "1 0 0; 0 1 0"}}), "headings: headings has 2 directions, expected 3, one a key");
+  EXPECT_EQ(refusal({{"headings", "1 0 0; 0 1 0; 0 0 0"}}), "headings: a heading must not be a zero vector");
+  EXPECT_EQ(refusal({{"heading", "1 0 0"}, {"headings", "1 0 0"}}),
+            "headings: give heading, one for all keys, or headings, one for each, not both");
+}
+
 TEST_F(FollowSurface, WithoutKeysItStaysOnTheSurfaceWhereItIs) {
   task = world.make("follow-surface", {{"frame", "palm"}, {"normal-filter", "0"}});
   rows = world.rowsFor(*task);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/tasks/task_world.h"
 
 namespace tactus::test {
@@ -18,6 +20,28 @@ TEST(Posture, IsASpringAndDamperOnEachJoint) {
   for (int k = 0; k < 4; ++k) {
     EXPECT_EQ(rows.jacobian(k, 19 + k), 1);
     EXPECT_NEAR(rows.force[k], (k + 1) * (reference[k] - world.sensed.q[19 + k]) - 0.1 * 0.2, 1e-12);
+  }
+}
+
+TEST(Posture, SwingsAboutItsReferenceWithTheSpeedOfTheSwing) {
+  TaskWorld world;
+  const auto task = world.make("posture", {{"joints", "thumb"}, {"stiffness", "2"}, {"damping", "0.1"}, {"q", "0.3 0.3 0.3 0.3"},
+                                           {"swing", "0.2 -0.2 0 0.4"}, {"swing-rate", "0.25"}});
+  auto rows = world.rowsFor(*task);
+  const Eigen::Vector4d swing(0.2, -0.2, 0, 0.4);
+  // Four seconds a period: still at its reference and fastest at 0, farthest and still after 1 s, back after 2 s.
+  const double way[] = {0, 1, 0, -1, 0};
+  const double speed[] = {1, 0, -1, 0, 1};
+  for (int second = 0; second <= 4; ++second) {
+    world.sensed.time = second;
+    world.sensed.q.tail(4).setConstant(0.1);
+    world.sensed.qd.tail(4).setConstant(0.5);
+    world.feel();
+    task->update(world.tick(), rows);
+    for (int k = 0; k < 4; ++k)
+      EXPECT_NEAR(rows.force[k],
+                  2 * (0.3 + swing[k] * way[second] - 0.1) + 0.1 * (swing[k] * speed[second] * std::numbers::pi / 2 - 0.5),
+                  1e-12) << second << " s, joint " << k;
   }
 }
 

@@ -15,9 +15,12 @@ class SurfaceMapTest : public ::testing::Test {
  protected:
   void SetUp() override {
     SurfaceMap::registerIn(world.registry);
-    values = control::makeValues(*world.registry.elements().find("surface-map"),
-                                 {{"name", "map"}, {"from", "touch.points"}, {"on", "touch.held"}, {"frame", "palm"},
-                                  {"within", "0.5 -0.3 0 0.9 0.3 0.4"}, {"every", "1"}, {"facing-angle", "1.2"}});
+    make({});
+  }
+  void make(test::Attributes more) {
+    more.insert({{"name", "map"}, {"from", "touch.points"}, {"on", "touch.held"}, {"frame", "palm"},
+                 {"within", "0.5 -0.3 0 0.9 0.3 0.4"}, {"every", "1"}, {"facing-angle", "1.2"}});
+    values = control::makeValues(*world.registry.elements().find("surface-map"), more);
     signal = world.registry.makeSignal(world.context(values));
     next = static_cast<const control::Place*>(signal->port("next"));
   }
@@ -48,6 +51,8 @@ class SurfaceMapTest : public ::testing::Test {
   }
 
   test::TaskWorld world;
+  control::ElementValues touch_values = control::makeValues(*world.registry.elements().find("contacts"),
+                                                            {{"name", "touch"}, {"desired", "fingers"}, {"hold", "0"}});
   control::ElementValues values;
   std::unique_ptr<control::Signal> signal;
   const control::Place* next = nullptr;
@@ -88,6 +93,49 @@ TEST_F(SurfaceMapTest, KeepsPointsApartAndReachesWhatIsTouched) {
   tick(3000);
   EXPECT_GT(next->number, number);
   EXPECT_GE(metric("places_reached"), 1);
+}
+
+TEST_F(SurfaceMapTest, HeadsOutwardsFromWhatIsKnownAndTurnsTheShiftAlong) {
+  make({{"heading", "outwards"}, {"step", "0.06"}});
+  for (double x = -0.5; x <= 0.5; x += 0.1)
+    for (double y = -0.5; y <= 0; y += 0.1) touch({x, y, 1});
+  touch({0, -0.2, 1});
+  tick(3000);
+  ASSERT_TRUE(next->known);
+  const Eigen::Vector3d& heading = next->heading_W;
+  EXPECT_NEAR(heading.norm(), 1, 1e-9);
+  EXPECT_NEAR(heading.z(), 0, 1e-9) << "across `facing`";
+  // Turned to the heading, the hand has its contacts ahead of the palm as before: there lies the place, on the ball.
+  const Eigen::Isometry3d palm = world.cache.framePose(world.link("palm"));
+  const Eigen::Vector3d ahead = world.sensed.contacts[0].point_W - palm.translation(), forward = palm.linear().col(2);
+  const double angle = std::atan2(heading.y(), heading.x()) - std::atan2(forward.y(), forward.x());
+  const Eigen::Vector3d place = next->position_W + Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * ahead;
+  EXPECT_NEAR((place - centre).norm(), radius, 0.01);
+  // Known is a patch about (0, −0.25, 1): the place lies outwards of its middle.
+  const Eigen::Vector3d out = place - (centre + radius * Eigen::Vector3d(0, -0.25, 1).normalized());
+  EXPECT_GT(heading.dot(out.normalized()), 0.5);
+}
+
+TEST_F(SurfaceMapTest, WhereTheProcessIsSureItStillGoesWhereNoTouchWas) {
+  // Sure of everything: nothing is left to know, unless a touch must have been near.
+  for (const bool asks : {false, true}) {
+    world.touch = world.registry.makeSignal(world.context(touch_values));
+    if (asks) make({{"known", "1"}, {"step", "0.03"}, {"met-within", "0.01"}});
+    else make({{"known", "1"}, {"step", "0.03"}});
+    std::vector<Eigen::Vector3d> touched;
+    for (double x = -0.25; x <= 0.3; x += 0.25)
+      for (double y = -0.25; y <= 0.3; y += 0.25) {
+        touch({x, y, 1});
+        touched.push_back(world.sensed.contacts[0].point_W);
+      }
+    tick(1000);
+    ASSERT_EQ(next->known, asks);
+    if (!asks) continue;
+    const Eigen::Vector3d palm = world.cache.framePose(world.link("palm")).translation();
+    const Eigen::Vector3d place = next->position_W + touched.back() - palm;
+    EXPECT_NEAR((place - centre).norm(), radius, 0.01);
+    for (const Eigen::Vector3d& point : touched) EXPECT_GT((place - point).norm(), 0.01);
+  }
 }
 
 TEST_F(SurfaceMapTest, GivesUpAPlaceThatItDoesNotComeNearTo) {
