@@ -202,7 +202,7 @@ TEST(CheckCommand, UnknownAttributeWithoutANearNameListsTheOthers) {
   const TemporaryFolder folder;
   const Outcome outcome = tactus({"check", changedStack(folder, "stiffness=", "zzzzzz=")});
   EXPECT_THAT(outcome.err, HasSubstr("<posture> has no attribute 'zzzzzz'; it takes name, class, joints, among, stiffness, "
-                                     "damping, q, on, desired, delay, active, "
+                                     "damping, q, swing, swing-rate, on, desired, delay, active, "
                                      "active-from, active-until, active-ramp\n"));
 }
 
