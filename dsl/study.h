@@ -23,7 +23,7 @@ struct StudyComparison {
   std::string metric;
   std::string by;                                                  ///< "backend" or a parameter
   std::string baseline;                                            ///< the level that all others are held against
-  std::vector<std::string> over;                                   ///< factors whose pairs count together
+  std::vector<std::string> over = {};                              ///< factors whose pairs count together
 };
 
 /// A name and where it is written.

@@ -17,7 +17,7 @@ struct Line {
   std::string colour;                                              ///< CSS
   std::vector<double> x;                                           ///< rising
   std::vector<double> y;
-  std::vector<double> lower, upper;                                ///< a band about it, as long as y, or none
+  std::vector<double> lower = {}, upper = {};                       ///< a band about it, as long as y, or none
 };
 
 /// Lines over a common rising axis, most often time.

@@ -449,7 +449,11 @@ Robot forInertias(const Robot& robot, std::vector<bool>& doubtful) {
     doubtful[i] = true;
   }
   for (Joint& joint : result.joints) {
-    Joint plain{.name = joint.name, .type = joint.type, .parent = joint.parent, .child = joint.child};
+    Joint plain;
+    plain.name = joint.name;
+    plain.type = joint.type;
+    plain.parent = joint.parent;
+    plain.child = joint.child;
     Joint kept = plain;
     kept.origin = joint.origin;
     kept.axis = joint.axis;

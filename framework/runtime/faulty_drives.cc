@@ -22,11 +22,12 @@ const char* elementOf(TorqueFaultKind kind) {
 FaultyDrives::FaultyDrives(std::unique_ptr<Plant> plant, std::vector<TorqueFault> faults, double period)
     : plant_(std::move(plant)), rounding_(1e-6 * period), applied_(Eigen::VectorXd::Zero(plant_->truth().qd.size())) {
   for (TorqueFault& asked : faults) {
-    Fault fault{std::move(asked), {}, applied_, {}};
+    Fault& fault = faults_.emplace_back();
+    fault.asked = std::move(asked);
     fault.record = {fault.asked.name, elementOf(fault.asked.kind)};
+    fault.kept = applied_;
     if (fault.asked.kind == TorqueFaultKind::delay)
       fault.past.assign(static_cast<std::size_t>(std::lround(fault.asked.delay / period)) + 1, applied_);
-    faults_.push_back(std::move(fault));
   }
   noteFaults();
 }

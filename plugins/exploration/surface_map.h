@@ -69,9 +69,9 @@ class SurfaceMap final : public control::Signal {
   const control::ContactSet& contacts_;
   int frame_;
   double spacing_, depth_, step_, facing_cosine_, known_, nearness_, patience_, progress_;
+  int every_;
   double clearance_;
   bool outwards_;
-  int every_;
   std::array<Eigen::Vector3d, 2> box_W_;
   Eigen::Vector3d facing_W_, first_W_, forward_F_;
   int capacity_;

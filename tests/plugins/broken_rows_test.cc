@@ -50,7 +50,7 @@ struct Arm {
     controller = std::make_unique<Controller>(model, std::vector<NamedSignal>{}, std::move(levels), make(), 0.001,
                                               Eigen::Vector3d(0, 0, -9.81));
     const BuildContext context(values, robot, *model, 0.001, {});
-    measure = registry.makeMeasure(MeasureContext(context, *controller, scene, make));
+    measure = registry.makeMeasure(MeasureContext(context, *controller, scene, sensed.q, make));
     sensed.q = Eigen::VectorXd::Constant(7, 0.3);
     sensed.qd = Eigen::VectorXd::Zero(7);
   }

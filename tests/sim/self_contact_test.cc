@@ -70,7 +70,7 @@ TEST(SelfContact, IsOneRecordOfTwoLinksThatPressEachOther) {
 /// Nothing but each other acts on them: their momentum stays as a blow and friction change both of theirs.
 TEST(SelfContact, KeepsTheMomentumOfBoth) {
   description::Scene scene = weightless();
-  scene.pairs.push_back({{}, {}, {}, {}, 0.5});
+  scene.pairs.emplace_back().friction = 0.5;
   SimbodyPlant plant(twoBalls(), scene, six(0, 0, 0, 0.05, 0.01, 0));
   const VectorXd none = VectorXd::Zero(6);
   plant.advance(six(20, 0, 0, 0, 0, 0), 0.005);                    // 1 m/s
@@ -107,7 +107,10 @@ TEST(SelfContact, IsOffWhereNoPairOfLinksIsNamed) {
 
 TEST(SelfContact, HasTheMaterialThatAPairGives) {
   description::Scene scene = weightless();
-  scene.pairs.push_back({{.link = 6}, {.link = 3}, 500.0});
+  description::ContactPair& pair = scene.pairs.emplace_back();
+  pair.one.link = 6;
+  pair.other.link = 3;
+  pair.stiffness = 500.0;
   const SimbodyPlant plant(twoBalls(), scene, six(0, 0, 0, 0.038, 0, 0));
   ASSERT_EQ(plant.sense().contacts.size(), 1u);
   EXPECT_NEAR(plant.sense().contacts[0].force_N, 500 * 0.002, 1e-9);
