@@ -13,6 +13,7 @@ using namespace control;
 namespace {
 
 constexpr std::size_t kMostLinks = 16;
+constexpr double kMostPostures = 3e7;                              // about a minute's search
 
 }  // namespace
 
@@ -61,6 +62,12 @@ ContactOptimum::ContactOptimum(const MeasureContext& context)
   options_.side.arc = context.values.real("arc");
   options_.step = context.values.real("step");
   options_.give = context.values.real("give");
+  double postures = 1;
+  for (const int joint : options_.joints)
+    postures *= 1 + std::ceil((model_.upper()[joint] - model_.lower()[joint]) / options_.step);
+  if (!scene_.objects.empty() && postures > kMostPostures)
+    throw ElementError("joints", "these have " + formatNumber(postures) + " postures, more than the " +
+                                     formatNumber(kMostPostures) + " that are searched: take fewer joints or a larger step");
   try {
     PostureSearch(robot_, model_, options_);
   } catch (const std::invalid_argument& error) {

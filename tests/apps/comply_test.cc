@@ -55,6 +55,10 @@ TEST(ContactOptimum, SaysWhatIsWrongWithItsChain) {
       check(R"(<contact-optimum name="best" links="index_distal" joints="index_distal ring_distal"/>)");
   EXPECT_NE(fingers.exit_code, 0);
   EXPECT_THAT(fingers.err, ::testing::HasSubstr("the joints are no chain"));
+  const Outcome fine = check(R"(<contact-optimum name="best" links="index_distal" step="0.002"
+                                joints="index_abduction index_proximal index_medial index_distal"/>)");
+  EXPECT_NE(fine.exit_code, 0);
+  EXPECT_THAT(fine.err, ::testing::HasSubstr("take fewer joints or a larger step"));
   const Outcome nowhere =
       check(R"(<contact-optimum name="best" links="index_distal" joints="index_distal" facing="0 0 0"/>)");
   EXPECT_NE(nowhere.exit_code, 0);
