@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/geometry/primitives.h"
+#include "tests/plugins/exploration/figure_of.h"
 #include "tests/runtime/pendulum.h"
 #include "tests/tasks/task_world.h"
 
@@ -44,14 +45,7 @@ class CoverageTest : public ::testing::Test {
     world.sensed.time += world.dt;
     measure->observe({world.sensed, world.sensed, *controller, torque, 1});
   }
-  double figure(const std::string& name) {
-    std::vector<control::Metric> metrics;
-    measure->metrics(metrics);
-    for (const auto& m : metrics)
-      if (m.name == name) return m.value;
-    ADD_FAILURE() << name;
-    return 0;
-  }
+  double figure(const std::string& name) { return testing::figureOf(*measure, name); }
 
   test::TaskWorld world;
   description::Scene scene;

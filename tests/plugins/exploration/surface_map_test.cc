@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/plugins/exploration/figure_of.h"
 #include "tests/tasks/task_world.h"
 
 namespace tactus::exploration {
@@ -41,14 +42,7 @@ class SurfaceMapTest : public ::testing::Test {
       world.sensed.time += world.dt;
     }
   }
-  double metric(const std::string& name) {
-    std::vector<control::Metric> metrics;
-    signal->metrics(metrics);
-    for (const auto& m : metrics)
-      if (m.name == name) return m.value;
-    ADD_FAILURE() << name;
-    return 0;
-  }
+  double metric(const std::string& name) { return testing::figureOf(*signal, name); }
 
   test::TaskWorld world;
   control::ElementValues touch_values = control::makeValues(*world.registry.elements().find("contacts"),
