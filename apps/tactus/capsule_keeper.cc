@@ -1,7 +1,5 @@
 #include "apps/tactus/capsule_keeper.h"
 
-#include <filesystem>
-
 #include "dsl/read_stack.h"
 #include "framework/control/conflict.h"
 #include "framework/runtime/file_error.h"
@@ -83,11 +81,9 @@ void CapsuleKeeper::write(const control::TickProblem& problem, const dsl::Capsul
   const std::string name = "capsule-" + std::to_string(tick_) + ".json";
   const std::string path = folder_ + "/" + name;
   try {
-    runtime::writeFile(path, dsl::capsuleToJson(problem, capsule));
+    runtime::writeWhole(path, dsl::capsuleToJson(problem, capsule));
     files_.push_back(name);
   } catch (const runtime::FileError& error) {
-    std::error_code ignored;                                       // half a capsule is none
-    std::filesystem::remove(path, ignored);
     warnings_.push_back(std::string("no capsule: ") + error.what());
   }
 }

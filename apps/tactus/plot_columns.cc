@@ -15,7 +15,6 @@
 
 #include "apps/tactus/command.h"
 #include "apps/tactus/plot.h"
-#include "apps/tactus/run_folder.h"
 #include "apps/tactus/study_folder.h"
 #include "apps/tactus/text.h"
 #include "dsl/nearest_name.h"
@@ -176,7 +175,7 @@ void writePng(const std::string& file, const std::string& svg) {
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw runtime::FileError(file, "rsvg-convert could not draw it");
-  writeWhole(file, runtime::readFile(drawn));
+  runtime::writeWhole(file, runtime::readFile(drawn));
 }
 
 int plotColumns(const PlotArguments& arguments) {
@@ -188,7 +187,7 @@ int plotColumns(const PlotArguments& arguments) {
   const auto write = [&](const std::string& svg) {
     if (arguments.out.empty()) std::cout << svg;
     else if (kind == ".png") writePng(arguments.out, svg);
-    else writeWhole(arguments.out, svg);
+    else runtime::writeWhole(arguments.out, svg);
     return exit_done;
   };
   if (of_study) {

@@ -297,9 +297,9 @@ void writeReport(const std::string& folder) {
   for (const std::string& warning : data.warnings) std::cerr << "warning: " << warning << "\n";
   const std::string contacts = drawContacts(data);
   const std::string touched = drawTouchedPoints(data);
-  writeWhole(folder + "/contacts.svg", contacts);
-  writeWhole(folder + "/touched_points.svg", touched);
-  writeWhole(folder + "/report.html", page(data, contacts, touched));
+  runtime::writeWhole(folder + "/contacts.svg", contacts);
+  runtime::writeWhole(folder + "/touched_points.svg", touched);
+  runtime::writeWhole(folder + "/report.html", page(data, contacts, touched));
 }
 
 std::string writeReportOfTwo(const std::string& folder, const std::string& other) {

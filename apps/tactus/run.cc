@@ -120,7 +120,7 @@ runtime::LoopResult runInto(const std::string& folder, Session& session, Keepers
                             const std::atomic<bool>& stop) {
   runtime::LoopResult result;
   try {
-    writeWhole(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
+    runtime::writeWhole(folder + "/stack.resolved.xml", dsl::writeResolved(session.stack()));
     writeScene(folder + "/scene.json", session);
     const auto recorder = session.recordInto(folder);
     runtime::ReplayRecorder replay(folder, session.stack().robot, session.scene(), session.tick());
@@ -170,7 +170,7 @@ int run(const RunArguments& arguments, bool json) {
   const std::string label = arguments.stack.back_end.empty() ? session.backEndName() : arguments.stack.back_end;
   const std::string folder = folderOf(arguments, session, label);
   const FolderClaim claim = claimRunFolder(folder, session);
-  if (from) writeWhole(folder + "/" + from_file, dsl::stateToJson(*from));
+  if (from) runtime::writeWhole(folder + "/" + from_file, dsl::stateToJson(*from));
 
   const Interrupt interrupt;
   Keepers keepers(session, folder, save_at);

@@ -102,23 +102,7 @@ std::string unusualTicks(const ordered_json& ticks) {
 
 }  // namespace
 
-void writeJson(const std::string& path, const ordered_json& json) { writeWhole(path, jsonText(json, 2) + "\n"); }
-
-void writeWhole(const std::string& path, const std::string& text) {
-  const std::string fresh = path + ".new";
-  try {
-    runtime::writeFile(fresh, text);
-    fs::rename(fresh, path);
-  } catch (const runtime::FileError& error) {
-    std::error_code ignored;
-    fs::remove(fresh, ignored);
-    throw runtime::FileError(path, error.reason);
-  } catch (const fs::filesystem_error& error) {
-    std::error_code ignored;
-    fs::remove(fresh, ignored);
-    throw runtime::FileError(path, error.code().message());
-  }
-}
+void writeJson(const std::string& path, const ordered_json& json) { runtime::writeWhole(path, jsonText(json, 2) + "\n"); }
 
 std::string defaultRunFolder(const dsl::Stack& stack, const std::string& back_end_label) {
   std::string label = back_end_label;
@@ -150,13 +134,14 @@ FolderClaim claimRunFolder(const std::string& folder, const Session& session) {
     throw runtime::FileError(folder, "holds files that are not of a run; give an empty or a new folder with --out");
   }
   FolderClaim claim(folder);
-  for (const char* made : {"report.html", "contacts.svg", "touched_points.svg", "scene.json", "replay.csv",
-                           "replay_contacts.csv", xray_file, from_file})
+  for (const char* made : {"report.html", "contacts.svg", "touched_points.svg", "scene.json", "log.csv", "timing.csv",
+                           "touched_points.csv", "replay.csv", "replay_contacts.csv", xray_file, from_file})
     fs::remove(fs::path(folder) / made);
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (CapsuleKeeper::isCapsule(name) || StateKeeper::isState(name)) old.push_back(entry.path());
+    if (CapsuleKeeper::isCapsule(name) || StateKeeper::isState(name) || name.ends_with(runtime::unfinished_suffix))
+      old.push_back(entry.path());
   }
   for (const fs::path& file : old) fs::remove(file);
   writeJson(folder + "/run.json", describeStart(session, status_running));

@@ -29,8 +29,8 @@ class FolderClaim {
   int descriptor_;
 };
 
-/// Makes the folder ready for a run: a new or empty one, or that of an earlier run, whose pictures, capsules and
-/// states are taken away.  Leaves a run.json that says "running".  Throws FileError for a folder that holds anything else.
+/// Makes the folder ready for a run: a new or empty one, or that of an earlier run, whose tables, pictures, capsules
+/// and states are taken away.  Leaves a run.json that says "running".  Throws FileError for a folder that holds anything else.
 FolderClaim claimRunFolder(const std::string& folder, const Session& session);
 
 
@@ -46,8 +46,6 @@ std::vector<std::string> faultNotes(const nlohmann::ordered_json& run);
 /// What describeRun holds, as a table for people.
 std::string summaryTable(const nlohmann::ordered_json& run);
 
-/// Writes a file, all of it or nothing; throws FileError.
-void writeWhole(const std::string& path, const std::string& text);
 /// Writes JSON with a final line end, all of it or nothing; throws FileError.
 void writeJson(const std::string& path, const nlohmann::ordered_json& json);
 

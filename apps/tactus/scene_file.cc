@@ -93,7 +93,7 @@ void writeScene(const std::string& path, const Session& session) {
     objects.push_back(std::move(json));
   }
   const ordered_json scene{{"format", scene_format}, {"robot", robot.name}, {"links", links}, {"objects", objects}};
-  writeWhole(path, jsonText(scene, -1) + "\n");
+  runtime::writeWhole(path, jsonText(scene, -1) + "\n");
 }
 
 }  // namespace tactus::app

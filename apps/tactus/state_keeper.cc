@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/tactus/run_folder.h"
 #include "apps/tactus/text.h"
+#include "framework/runtime/file_error.h"
 
 namespace tactus::app {
 
@@ -21,7 +21,7 @@ void StateKeeper::save() {
   const dsl::SavedState state = session_.save();
   const std::string name = "state-" + timeText(session_.time()) + ".json";
   if (std::find(files_.begin(), files_.end(), name) != files_.end()) return;
-  writeWhole(folder_ + "/" + name, dsl::stateToJson(state));
+  runtime::writeWhole(folder_ + "/" + name, dsl::stateToJson(state));
   files_.push_back(name);
 }
 

@@ -7,6 +7,7 @@
 #include "apps/tactus/study_page.h"
 #include "apps/tactus/text.h"
 #include "framework/control/element_values.h"
+#include "framework/runtime/file_error.h"
 
 namespace tactus::app {
 namespace {
@@ -334,12 +335,12 @@ void writeResults(const std::string& folder, const StudyResults& results) {
                                                          {"summary", conditionTable(results)},
                                                          {"comparisons", comparisonTable(results)}};
   for (const auto& [name, table] : tables) {
-    writeWhole(folder + "/" + name + ".csv", csvOf(table));
+    runtime::writeWhole(folder + "/" + name + ".csv", csvOf(table));
     writeJson(folder + "/" + name + ".json", table);
   }
   for (size_t i = 0; i < results.metrics.size(); ++i)
-    writeWhole(folder + "/" + plotFile(results.metrics[i]), boxPlotOf(results, i));
-  writeWhole(folder + "/index.html", studyPage(results));
+    runtime::writeWhole(folder + "/" + plotFile(results.metrics[i]), boxPlotOf(results, i));
+  runtime::writeWhole(folder + "/index.html", studyPage(results));
 }
 
 }  // namespace tactus::app

@@ -18,15 +18,17 @@ constexpr std::chrono::seconds flush_interval{1};
 
 CsvWriter::CsvWriter(const std::string& path, const std::vector<std::string>& columns)
     : path_(path), last_flush_(std::chrono::steady_clock::now()) {
-  descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  descriptor_ = ::open((path + unfinished_suffix).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throw FileError(path, "cannot be created", errno);
   buffer_.reserve(2 * buffer_size);
   try {
     for (const std::string& column : columns) *this << std::string_view(column);
     endRow();
     flush();
+    finishFile(path);
   } catch (...) {
     ::close(descriptor_);
+    dropUnfinished(path);
     throw;
   }
 }

@@ -11,7 +11,8 @@ namespace tactus::runtime {
 /// reads back to the same double, whatever the locale: readers that tell a column's kind by its first cell, as
 /// PlotJuggler does, know no exponents.  Whole rows go to the file when the buffer is full, and when a row ends, or
 /// flushWhenDue() is called, a second of the wall clock after they last did: a program that is killed leaves a readable
-/// file, without the rows of its last second. Throws FileError when the file cannot be written.
+/// file, without the rows of its last second.  The file takes its name when its header is in it.  Throws FileError when
+/// the file cannot be written.
 class CsvWriter {
  public:
   CsvWriter(const std::string& path, const std::vector<std::string>& columns);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 
@@ -51,5 +52,24 @@ void writeFile(const std::string& path, const std::string& content) {
     done += static_cast<size_t>(count);
   }
 }
+
+void writeWhole(const std::string& path, const std::string& content) {
+  try {
+    writeFile(path + unfinished_suffix, content);
+  } catch (const FileError& error) {
+    dropUnfinished(path);
+    throw FileError(path, error.reason);
+  }
+  finishFile(path);
+}
+
+void finishFile(const std::string& path) {
+  if (std::rename((path + unfinished_suffix).c_str(), path.c_str()) == 0) return;
+  const int error = errno;
+  dropUnfinished(path);
+  throw FileError(path, "cannot be written", error);
+}
+
+void dropUnfinished(const std::string& path) noexcept { ::unlink((path + unfinished_suffix).c_str()); }
 
 }  // namespace tactus::runtime

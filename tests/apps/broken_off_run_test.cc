@@ -72,6 +72,21 @@ TEST(KilledRun, AtAnyMomentLeavesWhatCanBeRead) {
   }
 }
 
+/// A run into the folder of an earlier one that ends before its first row: nothing of the earlier one is taken for its
+/// own, nor what one that was killed left unfinished.
+TEST(BrokenOffRun, HoldsNothingOfTheRunBeforeIt) {
+  const TemporaryFolder folder;
+  const std::string run = folder.file("run"), stack = run + "/stack.resolved.xml";
+  ASSERT_EQ(tactus({"run", data("press.xml"), "--duration", "0.5", "--out", run}).exit_code, 0);
+  std::ofstream(run + "/log.csv.new") << "ti";
+  fs::remove(stack);
+  fs::create_directory(stack);                                     // which the next run cannot write
+  EXPECT_EQ(tactus({"run", data("press.xml"), "--duration", "0.5", "--out", run}).exit_code, 6);
+  EXPECT_EQ(nlohmann::json::parse(contentOf(run + "/run.json"))["status"], "file-error");
+  for (const std::string& name : tables) EXPECT_FALSE(fs::exists(run + "/" + name)) << name;
+  EXPECT_FALSE(fs::exists(run + "/log.csv.new"));
+}
+
 /// The live view tells, unbuffered, how far a run is.  What it told a second and more before the kill is in every file.
 TEST(KilledRun, LosesAtMostASecondOfTheWallClock) {
   const TemporaryFolder folder;

@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <thread>
 
@@ -95,14 +99,38 @@ TEST(CsvWriter, HeaderIsOnDiskAtOnce) {
   EXPECT_EQ(contentOf(folder.file("a.csv")), "x,y\n");
 }
 
-TEST(CsvWriter, FullDiskIsAnErrorWithThePath) {
+/// Whoever looks finds no file or one with its header, at any moment: so does whoever kills the program.
+TEST(CsvWriter, NoFileIsEverWithoutItsHeader) {
+  const TemporaryFolder folder;
+  constexpr int files = 300;
+  const auto path = [&](int i) { return folder.file(std::to_string(i) + ".csv"); };
+  std::atomic<int> empty{0};
+  std::thread onlooker([&] {
+    for (int i = 0; i < files; ++i) {
+      struct stat found{};
+      while (::stat(path(i).c_str(), &found) != 0) {
+      }
+      if (found.st_size == 0) ++empty;
+    }
+  });
+  for (int i = 0; i < files; ++i) CsvWriter(path(i), {"x", "y"});
+  onlooker.join();
+  EXPECT_EQ(empty, 0);
+}
+
+TEST(CsvWriter, FullDiskIsAnErrorWithThePathAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.csv"), unfinished = path + unfinished_suffix;
+  std::filesystem::create_symlink("/dev/full", unfinished);
   try {
-    CsvWriter writer("/dev/full", {"x"});
+    CsvWriter writer(path, {"x"});
     FAIL() << "wrote to a full disk";
   } catch (const FileError& error) {
-    EXPECT_THAT(error.what(), AllOf(StartsWith("/dev/full: cannot be written: "), HasSubstr("No space left")));
-    EXPECT_EQ(error.path, "/dev/full");
+    EXPECT_THAT(error.what(), AllOf(StartsWith(path + ": cannot be written: "), HasSubstr("No space left")));
+    EXPECT_EQ(error.path, path);
   }
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(path)));
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(unfinished)));
 }
 
 TEST(CsvWriter, FolderThatIsNotThereIsAnError) {
