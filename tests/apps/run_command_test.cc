@@ -154,16 +154,6 @@ TEST(RunCommand, FileInsteadOfAFolder) {
   EXPECT_THAT(outcome.err, HasSubstr("/dev/full"));
 }
 
-TEST(RunCommand, FullDisk) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(runInto(folder.file("run"), {"--duration", "0.01"}).exit_code, 0);
-  fs::remove(folder.file("run/log.csv"));
-  fs::create_symlink("/dev/full", folder.file("run/log.csv"));
-  const Outcome outcome = runInto(folder.file("run"));
-  EXPECT_EQ(outcome.exit_code, 6);
-  EXPECT_THAT(outcome.err, HasSubstr("log.csv: cannot be written: No space left on device"));
-}
-
 TEST(RunCommand, FullDiskLeavesAStatus) {
   const TemporaryFolder folder;
   Settings small;

@@ -120,7 +120,7 @@ TEST(Recorder, TouchedPointsAreWrittenOnce) {
 
 TEST(Recorder, FullDiskIsTold) {
   const TemporaryFolder folder;
-  std::filesystem::create_symlink("/dev/full", folder.file("log.csv"));
+  std::filesystem::create_symlink("/dev/full", folder.file("log.csv") + unfinished_suffix);
   try {
     record(into(folder), 0.01);
     FAIL() << "a full disk went unnoticed";
