@@ -67,6 +67,7 @@ void expectNoAllocation(const std::function<std::unique_ptr<control::BackEnd>()>
 
 TEST(Allocation, ASolveOfTheHierarchyTakesNone) {
   expectNoAllocation([] { return std::make_unique<hqp::Hqp>(); }, 32);
+  expectNoAllocation([] { return std::make_unique<hqp::Hqp>(hqp::HqpOptions{.damping = 0.1}); }, 32);
 }
 
 TEST(Allocation, ASolveByTheActiveSetTakesNone) {

@@ -85,18 +85,18 @@ TEST(Hqp, Law4IsTheConsistentCascadeOnEqualities) {
   EXPECT_GE(met.deficient, 100);
 }
 
-TEST(Hqp, Law1And2LowerLevelsChangeNothingAbove) {
+void lawOneAndTwo(const HqpOptions& options) {
   ProblemSource source(42);
   Met met;
   double raised = 0;
   while (met.problems < problems_per_law) {
     const TickProblem problem = anyProblem(source, met.problems);
     if (!noFade(problem)) continue;
-    const TickSolution solution = solve(problem);
+    const TickSolution solution = solve(problem, options);
     ASSERT_EQ(solution.status, Status::ok) << solution.message;
     met.add(problem, solution);
     for (int i = 0; i < static_cast<int>(problem.levels.size()); ++i) {
-      const TickSolution alone = solve(test::topLevels(problem, i + 1));
+      const TickSolution alone = solve(test::topLevels(problem, i + 1), options);
       ASSERT_EQ(alone.status, Status::ok);
       const double size = test::inverseMassNorm(problem, solution.torque) + test::inverseMassNorm(problem, alone.torque);
       const Eigen::VectorXd change = solution.torque - alone.torque;
@@ -114,10 +114,14 @@ TEST(Hqp, Law1And2LowerLevelsChangeNothingAbove) {
   met.shapes.expectWide(0.1);
 }
 
+TEST(Hqp, Law1And2LowerLevelsChangeNothingAbove) { lawOneAndTwo({}); }
+
+TEST(Hqp, Law1And2HoldForDampedLevels) { lawOneAndTwo({.damping = 0.1}); }
+
 // The hierarchy by another way: at each level, dense and slow, the least-norm point of all that come as near as any can.
 // A point is as good when no row set lets the level come nearer: the optimality of every level is checked by its own
 // conditions, from the constraints that the levels above left.
-TEST(Hqp, EveryLevelIsOptimal) {
+void everyLevelIsOptimal(const HqpOptions& options) {
   ProblemSource source(43);
   Met met;
   int limited = 0, without_digits = 0;
@@ -130,7 +134,7 @@ TEST(Hqp, EveryLevelIsOptimal) {
     std::vector<Eigen::VectorXd> points;
     bool held = false;
     for (std::size_t i = 0; i < problem.levels.size(); ++i) {
-      const TickSolution solution = solve(test::topLevels(problem, static_cast<int>(i) + 1));
+      const TickSolution solution = solve(test::topLevels(problem, static_cast<int>(i) + 1), options);
       ASSERT_EQ(solution.status, Status::ok) << solution.message;
       points.push_back(cholesky.matrixL().solve(solution.torque));
       held |= solution.rows_held > 0;
@@ -151,7 +155,7 @@ TEST(Hqp, EveryLevelIsOptimal) {
       h << problem.torque_limits->upper, -problem.torque_limits->lower;
     }
     for (std::size_t i = 0; i < problem.levels.size(); ++i) {
-      // g = Aᵀ(A y − b) must be −Eᵀν − Gᵀλ with λ ≥ 0 on rows at their bounds.
+      // g = Aᵀ(A y − b) + (λw)² y must be −Eᵀν − Gᵀμ with μ ≥ 0 on rows at their bounds.
       const Eigen::VectorXd& y = points[i];
       Eigen::VectorXd own = Eigen::VectorXd::Zero(problem.dof);
       for (const TickTask& task : problem.levels[i].tasks) own += task.J().transpose() * task.F();
@@ -172,6 +176,7 @@ TEST(Hqp, EveryLevelIsOptimal) {
           size += std::abs(wanted);
         }
       if (steepest > 0) gradient /= steepest;
+      if (steepest > 0 && i > 0) gradient += options.damping * options.damping * y;
       std::vector<Eigen::VectorXd> cone;
       for (int j = 0; j < G.rows(); ++j) {
         const double norm = G.row(j).norm();
@@ -209,6 +214,42 @@ TEST(Hqp, EveryLevelIsOptimal) {
   EXPECT_LE(met.worst, 1e-4);
   EXPECT_GE(limited, 400);
   met.shapes.expectWide(0.1);
+}
+
+TEST(Hqp, EveryLevelIsOptimal) { everyLevelIsOptimal({}); }
+
+TEST(Hqp, EveryDampedLevelIsOptimalToo) { everyLevelIsOptimal({.damping = 0.1}); }
+
+/// Two rows at an angle φ to each other, one above the other: of the lower, sin φ is left.  Undamped it is met whatever
+/// that takes; damped, by hand: u = s b/(s² + λ²) along what is left.
+TEST(Hqp, DampingBoundsWhatIsAskedOfADirectionWithHardlyAnyRoom) {
+  for (const double angle : {1.5, 0.3, 0.1, 0.03, 0.01}) {
+    TickProblem problem;
+    problem.dof = 2;
+    problem.mass_matrix = Eigen::Matrix2d::Identity();
+    const auto level = [&](int priority, double x, double y, double asked) {
+      TickTask task;
+      task.rows = 1;
+      task.jacobian = Eigen::RowVector2d(x, y);
+      task.force = Eigen::VectorXd::Zero(1);
+      task.has_acceleration = true;
+      task.acceleration = Eigen::VectorXd::Constant(1, asked);
+      TickLevel one;
+      one.priority = priority;
+      one.tasks = {task};
+      problem.levels.push_back(one);
+    };
+    level(1, 1, 0, 0.5);
+    level(2, std::cos(angle), std::sin(angle), 2);
+    const double sigma = std::sin(angle), left = 2 - 0.5 * std::cos(angle);
+    const TickSolution exact = solve(problem);
+    EXPECT_NEAR(exact.torque[0], 0.5, 1e-12);
+    EXPECT_NEAR(exact.torque[1], left / sigma, 1e-9 * left / sigma);
+    const TickSolution damped = solve(problem, {.damping = 0.1});
+    EXPECT_NEAR(damped.torque[0], 0.5, 1e-12);
+    EXPECT_NEAR(damped.torque[1], sigma * left / (sigma * sigma + 0.01), 1e-12);
+    EXPECT_LE(damped.torque[1], left / (2 * 0.1) + 1e-12);
+  }
 }
 
 TEST(Hqp, Law6TheOrderOfTasksChangesNothing) {
@@ -332,7 +373,7 @@ TEST(Hqp, TheInertiaMetricWeighsEachRowByTheInertiaThatItMeets) {
   EXPECT_GT(told_apart, 1e-3) << "in some problem the two metrics differ";
 }
 
-TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {
+void aWarmStartSavesSteps(const HqpOptions& options) {
   ProblemSource source(45);
   long cold_steps = 0, warm_steps = 0;
   double worst = 0;
@@ -340,14 +381,14 @@ TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {
     TickProblem problem = source.problem(mixed());
     problem.torque_limits = source.limits(problem.dof, 0.5);
     if (!noFade(problem)) continue;
-    Hqp warm;
+    Hqp warm(options);
     TickSolution solution;
     warm.prepare(problem, solution);
     warm.solve(problem, solution);
     for (TickLevel& level : problem.levels)
       for (TickTask& task : level.tasks) task.force *= 1.001;
     warm.solve(problem, solution);
-    const TickSolution cold = solve(problem);
+    const TickSolution cold = solve(problem, options);
     warm_steps += solution.iterations;
     cold_steps += cold.iterations;
     worst = std::max(worst, test::inverseMassNorm(problem, cold.torque - solution.torque) /
@@ -358,9 +399,13 @@ TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) {
   EXPECT_LT(warm_steps, cold_steps / 2);
 }
 
+TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) { aWarmStartSavesSteps({}); }
+
+TEST(Hqp, AWarmStartSavesStepsOfDampedLevelsToo) { aWarmStartSavesSteps({.damping = 0.1}); }
+
 // Whatever rows a tick is told to start with: those of a robot that wanted the opposite, of one that wanted nothing, and
 // of one with other limits.
-TEST(Hqp, AWrongWarmStartChangesNothing) {
+void aWrongWarmStartChangesNothing(const HqpOptions& options) {
   ProblemSource source(47);
   double worst = 0;
   int compared = 0, failed = 0;
@@ -368,7 +413,7 @@ TEST(Hqp, AWrongWarmStartChangesNothing) {
     TickProblem problem = source.problem(mixed());
     problem.torque_limits = source.limits(problem.dof, 0.5);
     if (!noFade(problem)) continue;
-    const TickSolution cold = solve(problem);
+    const TickSolution cold = solve(problem, options);
     if (cold.status == Status::failed) {                           // rounding left it no way, which a start may show it
       ++failed;
       continue;
@@ -378,7 +423,7 @@ TEST(Hqp, AWrongWarmStartChangesNothing) {
     for (TickLevel& level : other.levels)
       for (TickTask& task : level.tasks) task.force *= factor;
     if (factor == 1) other.torque_limits = source.limits(problem.dof, 0.3);
-    Hqp warm;
+    Hqp warm(options);
     TickSolution solution;
     warm.prepare(other, solution);
     warm.solve(other, solution);
@@ -393,6 +438,10 @@ TEST(Hqp, AWrongWarmStartChangesNothing) {
   EXPECT_EQ(failed, 0);
   EXPECT_LE(worst, 1e-7);
 }
+
+TEST(Hqp, AWrongWarmStartChangesNothing) { aWrongWarmStartChangesNothing({}); }
+
+TEST(Hqp, AWrongWarmStartChangesNothingOfDampedLevels) { aWrongWarmStartChangesNothing({.damping = 0.1}); }
 
 // Limits may take directions from a level; the ranks are those of its rows alone, in the first tick as in the next.
 TEST(Hqp, RanksAreThoseOfTheRowsWhateverLimitsHold) {
@@ -416,7 +465,7 @@ TEST(Hqp, RanksAreThoseOfTheRowsWhateverLimitsHold) {
   EXPECT_GE(limited, 100);
 }
 
-TEST(Hqp, Law9EveryTickIsFiniteAndWithinLimitsInBoundedWork) {
+void lawNine(const HqpOptions& options) {
   ProblemSource source(46);
   int infeasible = 0, late = 0, failed = 0;
   test::MetShapes shapes;
@@ -429,7 +478,7 @@ TEST(Hqp, Law9EveryTickIsFiniteAndWithinLimitsInBoundedWork) {
     problem.torque_limits = source.limits(problem.dof, 1);
     if (source.chance(0.5)) problem.torque_limits->priority = problem.levels.back().priority;
     if (source.chance(0.2)) problem.torque_limits->lower[0] = problem.torque_limits->upper[0];
-    Hqp back_end;
+    Hqp back_end(options);
     TickSolution solution;
     back_end.prepare(problem, solution);
     if (source.chance(0.3)) back_end.setDeadline({.iterations = source.integer(0, 5)});
@@ -450,6 +499,10 @@ TEST(Hqp, Law9EveryTickIsFiniteAndWithinLimitsInBoundedWork) {
   EXPECT_GE(late, 20);
   shapes.expectWide(0.1);
 }
+
+TEST(Hqp, Law9EveryTickIsFiniteAndWithinLimitsInBoundedWork) { lawNine({}); }
+
+TEST(Hqp, Law9HoldsForDampedLevels) { lawNine({.damping = 0.1}); }
 
 }  // namespace
 }  // namespace tactus::hqp
