@@ -69,7 +69,8 @@ constexpr std::int64_t most_steps = 1'000'000'000'000'000;         // of a state
 
 constexpr const char* usual_causes =
     "Usual causes: damping gains too high for the joint's inertia at this control rate (keep d·dt/I below 0.5), a mass "
-    "matrix of the controller that lacks the rotor inertia, delay, or a start inside an object.";
+    "matrix of the controller that lacks the rotor inertia, delay, a start inside an object, or a back end that asks too "
+    "much of a nearly singular posture (raise its damping or regularisation).";
 
 }  // namespace
 

@@ -12,12 +12,19 @@ std::vector<AttributeRow> objectiveAttributes() {
            .description =
                "What the forces of contact tasks do in the eyes of the levels below. moving: they accelerate the robot like "
                "any other torque, and are made up for. balanced: the surface bears them, as in the weighted programme.",
-           .choices = {"moving", "balanced"}}};
+           .choices = {"moving", "balanced"}},
+          {.name = "damping", .type = ValueType::real, .unit = "1", .default_text = "0",
+           .description =
+               "λ, below the first level: price of torque in the inverse-inertia metric beside the level's errors, in shares "
+               "of its heaviest row. Where the levels above leave it hardly any room, nothing is driven harder than 1/(2λ) of "
+               "what is asked; without it, without bound.",
+           .lower = 0, .upper = 1}};
 }
 
 ObjectiveOptions objectiveOptions(const ElementValues& values) {
   return {values.text("metric") == "inertia" ? RowMetric::inertia : RowMetric::identity,
-          values.text("contact-forces") == "balanced" ? ContactForces::balanced : ContactForces::moving};
+          values.text("contact-forces") == "balanced" ? ContactForces::balanced : ContactForces::moving,
+          values.real("damping")};
 }
 
 }  // namespace tactus::control

@@ -16,13 +16,20 @@ enum class RowMetric { identity, inertia };
 ///             the contact rows with F > 0 in this level and those above.
 enum class ContactForces { moving, balanced };
 
-/// How a level's rows become an objective.
+/// How a level's rows become an objective.  With `damping` λ > 0, below the first level, it is
+///
+///   ‖W (J_i M⁻¹ τ − a_i)‖² + λ² w² τᵀM⁻¹τ,
+///
+/// w what the heaviest of its rows weighs (1 in the inertia metric).  In a direction of which the levels above have left
+/// the singular value σ the torque is then σ/(σ² + λ²) ≤ 1/(2λ) times what is asked, instead of 1/σ (Nakamura and Hanafusa
+/// 1986).
 struct ObjectiveOptions {
   RowMetric metric = RowMetric::identity;
   ContactForces contacts = ContactForces::moving;
+  double damping = 0;                                              ///< λ, dimensionless
 };
 
-/// The attributes of a back end that say so, `metric` and `contact-forces`, and what they say.
+/// The attributes of a back end that say so, `metric`, `contact-forces` and `damping`, and what they say.
 std::vector<AttributeRow> objectiveAttributes();
 ObjectiveOptions objectiveOptions(const ElementValues& values);
 

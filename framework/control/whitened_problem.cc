@@ -140,7 +140,11 @@ int WhitenedProblem::gatherObjective(const TickProblem& problem, int level, cons
     weights[count] = by_inertia || !(norms_[j] > 0) ? 1 : norms_[j];
     b[count++] = (norms_[j] > 0 ? asked / norms_[j] : 0) - reached;
   });
-  return count;
+  if (!damps(level) || count == 0) return count;
+  columns.middleCols(count, dof_).setIdentity();
+  b.segment(count, dof_) = -y;
+  weights.segment(count, dof_).setConstant(objective_.damping * weights.head(count).maxCoeff());
+  return count + dof_;
 }
 
 void WhitenedProblem::objectiveLeft(const TickProblem& problem, int level, const Eigen::VectorXd& y,
@@ -149,6 +153,7 @@ void WhitenedProblem::objectiveLeft(const TickProblem& problem, int level, const
   forEachObjective(problem, level, y, balanced(), [&](int j, double asked, double reached) {
     b[count++] = (norms_[j] > 0 ? asked / norms_[j] : 0) - reached;
   });
+  if (damps(level) && count > 0) b.segment(count, dof_) = -y;
 }
 
 void WhitenedProblem::reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution) {

@@ -56,8 +56,9 @@ class WhitenedProblem {
   void reportResiduals(const TickProblem& problem, const Eigen::VectorXd& y, TickSolution& solution);
   /// What level i asks for, J_i y = a_i in unit rows, with J_i and a_i as above: writes the rows to `columns` (dof ×
   /// capacity), a_i − J_i y to `b` and to `weights` what the metric weighs their errors by: in `identity` the rows' norms,
-  /// which bring both back to the level's own units; returns their number.  The level's equality rows come first.  With
-  /// balanced contacts y and a_i are without their torque.
+  /// which bring both back to the level's own units; returns their number.  The level's equality rows come first; where the
+  /// objective is damped, y = 0 comes last, a row for each of the dof.  With balanced contacts y and a_i are without their
+  /// torque.  All three hold at least row capacity + dof rows.
   int gatherObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, RowMajorMatrix& columns,
                       Eigen::VectorXd& b, Eigen::VectorXd& weights);
   /// `b` alone.
@@ -72,6 +73,7 @@ class WhitenedProblem {
   };
   void gather(const TickProblem& problem);
   void whiten();
+  bool damps(int level) const { return objective_.damping > 0 && level > 0; }
   bool balanced() const { return objective_.contacts == ContactForces::balanced; }
   template <typename F>
   void forEachObjective(const TickProblem& problem, int level, const Eigen::VectorXd& y, bool balanced, const F& f);

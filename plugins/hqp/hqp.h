@@ -11,19 +11,14 @@ namespace tactus::hqp {
 struct HqpOptions {
   control::RankOptions rank = control::dividing_rank;
   control::ObjectiveOptions objective = {};
-  double damping = 0;                                              ///< λ ≥ 0, dimensionless
 };
 
 /// Strict hierarchical quadratic programme (Escande, Mansard, Wieber 2014): level by level from the top,
 ///
 ///   min ‖J_i M⁻¹ τ − a_i‖², and of its optima τ⁽ⁱ⁾ the one with the least τᵀM⁻¹τ,
 ///
-/// and below the first level, where λ > 0, min ‖J_i M⁻¹ τ − a_i‖² + λ² w² τᵀM⁻¹τ, w the weight of its heaviest row (1 in the
-/// inertia metric): a direction that the levels above have left hardly any room, singular value σ, then takes
-/// at most 1/(2λ) of what it is asked for instead of 1/σ (Nakamura, Hanafusa 1986).
-///
 /// J_i the level's equality rows and its inequality rows with F ≠ 0, a_i = J_i M⁻¹ τ°_i or the acceleration that a task
-/// asks for, errors and contacts as `objective` takes them.  From then on E_i M⁻¹ τ = E_i M⁻¹ τ⁽ⁱ⁾ for its equality rows, I_i M⁻¹ τ ≤ I_i M⁻¹ τ⁽ⁱ⁾ for its inequality
+/// asks for, errors and contacts as `objective` takes and damps them.  From then on E_i M⁻¹ τ = E_i M⁻¹ τ⁽ⁱ⁾ for its equality rows, I_i M⁻¹ τ ≤ I_i M⁻¹ τ⁽ⁱ⁾ for its inequality
 /// rows.  Torque limits stand at the level of their priority, above all levels when they have none: from there on no
 /// level leaves them; where the levels above already did, the least violation (in squares) is kept and the tick is
 /// infeasible.  A contact's force_max and its friction cone bound its reference: no level below can change its rows.

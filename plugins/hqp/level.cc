@@ -59,7 +59,6 @@ bool Hqp::Solver::rowsCost(const TickProblem& problem, int level) {
   const PriorityFactor::Stage& own = chain_.lastStage();
   if (bounds.deficient || own.rank > own.held || open_rows_ == 0) return false;
   whitened_.objectiveLeft(problem, level, y_, target_);
-  target_.segment(open_rows_ - damping_rows_, damping_rows_) = -y_.head(damping_rows_);
   auto left = target_.head(open_rows_).array();
   const auto weights = weights_.head(open_rows_).array();
   left *= (weights / weights.maxCoeff()).square();
@@ -79,22 +78,11 @@ bool Hqp::Solver::rowsCost(const TickProblem& problem, int level) {
 // Decomposes what the level asks for, in what the chain leaves, and comes nearest to it when nothing else is looked at.
 void Hqp::Solver::openStage(const TickProblem& problem, int level) {
   open_rows_ = whitened_.gatherObjective(problem, level, base_, rows_, target_, weights_);
-  dampOpenRows(level);
   chain_.advance(open());
   chain_.hold(open());
   chain_.leastSquares(open(), target_.head(open_rows_), weights_.head(open_rows_), z_);
   toPoint();
   have_turned_ = false;
-}
-
-// Beside what the level asks for, y = 0: unit rows whose errors weigh λ times as much as those of its heaviest.
-void Hqp::Solver::dampOpenRows(int level) {
-  damping_rows_ = damping_ > 0 && level > 0 && open_rows_ > 0 ? dof_ : 0;
-  if (damping_rows_ == 0) return;
-  rows_.middleCols(open_rows_, dof_).setIdentity();
-  target_.segment(open_rows_, dof_) = -base_;
-  weights_.segment(open_rows_, dof_).setConstant(damping_ * weights_.head(open_rows_).maxCoeff());
-  open_rows_ += dof_;
 }
 
 bool Hqp::Solver::leavesABound(double share) {

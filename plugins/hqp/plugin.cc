@@ -11,7 +11,6 @@ std::unique_ptr<control::BackEnd> make(const ElementValues& values) {
   HqpOptions options;
   options.rank = {values.real("rank-tolerance"), values.real("fade")};
   options.objective = control::objectiveOptions(values);
-  options.damping = values.real("damping");
   if (options.rank.fade < options.rank.rank_tolerance)
     throw control::ElementError("fade", "fade must not be below rank-tolerance");
   return std::make_unique<Hqp>(options);
@@ -37,12 +36,6 @@ void registerElements(control::Registry& registry) {
        .description =
            "Singular value from which a direction is held exactly; a smoothstep leads there from rank-tolerance.",
        .lower = 0, .upper = 1, .lower_open = true},
-      {.name = "damping", .type = ValueType::real, .unit = "1", .default_text = "0",
-       .description =
-           "λ, below the first level: price of torque in the inverse-inertia metric beside the level's errors, in shares of "
-           "its heaviest row. Where the levels above leave it hardly any room, nothing is driven harder than 1/(2λ) of "
-           "what is asked; without it, without bound.",
-       .lower = 0, .upper = 1},
   };
   for (control::AttributeRow& attribute : control::objectiveAttributes()) row.attributes.push_back(std::move(attribute));
   registry.addBackEnd(std::move(row), make);

@@ -28,7 +28,6 @@ Hqp::Solver::Solver(const TickProblem& shape, const HqpOptions& options)
       ranks_(shape, options.rank),
       whitened_(shape, options.objective),
       bounded_(shape),
-      damping_(options.damping),
       chain_(shape.dof, shape.rowCapacity() + shape.dof, 2 * static_cast<int>(shape.levels.size()) + 2, options.rank),
       rows_(shape.dof, shape.rowCapacity() + shape.dof),
       held_rows_(shape.dof, shape.dof),

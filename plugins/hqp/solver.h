@@ -46,7 +46,6 @@ class Hqp::Solver {
   Outcome solveAsLastTime(const TickProblem& problem, int level);
   bool rowsCost(const TickProblem& problem, int level);
   void openStage(const TickProblem& problem, int level);
-  void dampOpenRows(int level);
   Outcome price(int level, double of_free_directions);
   Outcome settle(const TickProblem& problem, int level);
   Outcome enterBounds(int level, double tolerated);
@@ -72,9 +71,7 @@ class Hqp::Solver {
   control::WhitenedProblem whitened_;
   TickProblem bounded_;
   PriorityFactor chain_;
-  double damping_;
   int open_rows_ = 0;
-  int damping_rows_ = 0;                                           // the last of them
   RowMajorMatrix rows_;                                            // of the open stage, as `hold` left them
   RowMajorMatrix held_rows_;                                       // of the stage of bounds, likewise
   Eigen::VectorXd target_;

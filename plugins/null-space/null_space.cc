@@ -18,13 +18,13 @@ using control::TickSolution;
 struct NullSpace::Workspace {
   Workspace(const TickProblem& shape, const NullSpaceOptions& options)
       : problem(shape, options.objective),
-        chain(shape.dof, shape.rowCapacity(), static_cast<int>(shape.levels.size()) + 1, options.rank),
+        chain(shape.dof, shape.rowCapacity() + shape.dof, static_cast<int>(shape.levels.size()) + 1, options.rank),
         single(shape.dof, shape.rowCapacity(), 2, options.rank),
         projection(shape.dof, shape.rowCapacity(), options.inequalities, options.rank, options.release_rows),
-        rows(shape.dof, shape.rowCapacity()),
+        rows(shape.dof, shape.rowCapacity() + shape.dof),
         inequalities(shape.dof, shape.rowCapacity()),
-        target(shape.rowCapacity()),
-        weights(shape.rowCapacity()),
+        target(rows.cols()),
+        weights(rows.cols()),
         torque(shape.dof, 1),
         total(shape.dof) {}
 

@@ -29,7 +29,10 @@ TEST(Allocation, ASolveOfTheCascadeTakesNone) {
         const control::RankOptions rank = k % 2 ? control::RankOptions{} : control::RankOptions{0.05, 0.5};
         control::TickProblem problem = source.problem({.max_rows = 8});
         if (k % 3 == 0) problem.torque_limits = source.limits(problem.dof, 1);
-        NullSpace back_end({.cascade = cascade, .inequalities = inequalities, .rank = rank});
+        NullSpace back_end({.cascade = cascade,
+                            .inequalities = inequalities,
+                            .rank = rank,
+                            .objective = {.damping = k % 4 < 2 ? 0.0 : 0.1}});
         control::TickSolution solution;
         back_end.prepare(problem, solution);
         const long before = conformance::allocationCount();
@@ -67,7 +70,7 @@ void expectNoAllocation(const std::function<std::unique_ptr<control::BackEnd>()>
 
 TEST(Allocation, ASolveOfTheHierarchyTakesNone) {
   expectNoAllocation([] { return std::make_unique<hqp::Hqp>(); }, 32);
-  expectNoAllocation([] { return std::make_unique<hqp::Hqp>(hqp::HqpOptions{.damping = 0.1}); }, 32);
+  expectNoAllocation([] { return std::make_unique<hqp::Hqp>(hqp::HqpOptions{.objective = {.damping = 0.1}}); }, 32);
 }
 
 TEST(Allocation, ASolveByTheActiveSetTakesNone) {

@@ -28,6 +28,8 @@ using test::RandomProblemOptions;
 constexpr double law_tolerance = 1e-9;                             // relative, in the M⁻¹ metric
 constexpr int problems_per_law = 1000;
 
+const HqpOptions damped{.objective = {.damping = 0.1}};
+
 TickSolution solve(const TickProblem& problem, const HqpOptions& options = {}) {
   Hqp back_end(options);
   TickSolution solution;
@@ -64,17 +66,19 @@ struct Met {
   void difference(double d) { worst = std::max(worst, d); }
 };
 
-TEST(Hqp, Law4IsTheConsistentCascadeOnEqualities) {
+void lawFour(const HqpOptions& options) {
   ProblemSource source(41);
   Met met;
   while (met.problems < problems_per_law) {
     const TickProblem problem = source.problem(equalitiesOnly());
     if (!noFade(problem)) continue;
-    null_space::NullSpace cascade({.cascade = null_space::Cascade::consistent, .rank = control::dividing_rank});
+    null_space::NullSpace cascade({.cascade = null_space::Cascade::consistent,
+                                  .rank = control::dividing_rank,
+                                  .objective = options.objective});
     TickSolution expected;
     cascade.prepare(problem, expected);
     cascade.solve(problem, expected);
-    const TickSolution solution = solve(problem);
+    const TickSolution solution = solve(problem, options);
     ASSERT_EQ(solution.status, Status::ok) << solution.message;
     met.add(problem, solution);
     const double size = test::inverseMassNorm(problem, expected.torque);
@@ -84,6 +88,10 @@ TEST(Hqp, Law4IsTheConsistentCascadeOnEqualities) {
   EXPECT_LE(met.worst, law_tolerance);
   EXPECT_GE(met.deficient, 100);
 }
+
+TEST(Hqp, Law4IsTheConsistentCascadeOnEqualities) { lawFour({}); }
+
+TEST(Hqp, Law4HoldsForDampedLevels) { lawFour(damped); }
 
 void lawOneAndTwo(const HqpOptions& options) {
   ProblemSource source(42);
@@ -116,7 +124,7 @@ void lawOneAndTwo(const HqpOptions& options) {
 
 TEST(Hqp, Law1And2LowerLevelsChangeNothingAbove) { lawOneAndTwo({}); }
 
-TEST(Hqp, Law1And2HoldForDampedLevels) { lawOneAndTwo({.damping = 0.1}); }
+TEST(Hqp, Law1And2HoldForDampedLevels) { lawOneAndTwo(damped); }
 
 // The hierarchy by another way: at each level, dense and slow, the least-norm point of all that come as near as any can.
 // A point is as good when no row set lets the level come nearer: the optimality of every level is checked by its own
@@ -176,7 +184,7 @@ void everyLevelIsOptimal(const HqpOptions& options) {
           size += std::abs(wanted);
         }
       if (steepest > 0) gradient /= steepest;
-      if (steepest > 0 && i > 0) gradient += options.damping * options.damping * y;
+      if (steepest > 0 && i > 0) gradient += options.objective.damping * options.objective.damping * y;
       std::vector<Eigen::VectorXd> cone;
       for (int j = 0; j < G.rows(); ++j) {
         const double norm = G.row(j).norm();
@@ -218,7 +226,7 @@ void everyLevelIsOptimal(const HqpOptions& options) {
 
 TEST(Hqp, EveryLevelIsOptimal) { everyLevelIsOptimal({}); }
 
-TEST(Hqp, EveryDampedLevelIsOptimalToo) { everyLevelIsOptimal({.damping = 0.1}); }
+TEST(Hqp, EveryDampedLevelIsOptimalToo) { everyLevelIsOptimal(damped); }
 
 /// Two rows at an angle φ to each other, one above the other: of the lower, sin φ is left.  Undamped it is met whatever
 /// that takes; damped, by hand: u = s b/(s² + λ²) along what is left.
@@ -245,10 +253,10 @@ TEST(Hqp, DampingBoundsWhatIsAskedOfADirectionWithHardlyAnyRoom) {
     const TickSolution exact = solve(problem);
     EXPECT_NEAR(exact.torque[0], 0.5, 1e-12);
     EXPECT_NEAR(exact.torque[1], left / sigma, 1e-9 * left / sigma);
-    const TickSolution damped = solve(problem, {.damping = 0.1});
-    EXPECT_NEAR(damped.torque[0], 0.5, 1e-12);
-    EXPECT_NEAR(damped.torque[1], sigma * left / (sigma * sigma + 0.01), 1e-12);
-    EXPECT_LE(damped.torque[1], left / (2 * 0.1) + 1e-12);
+    const TickSolution solution = solve(problem, damped);
+    EXPECT_NEAR(solution.torque[0], 0.5, 1e-12);
+    EXPECT_NEAR(solution.torque[1], sigma * left / (sigma * sigma + 0.01), 1e-12);
+    EXPECT_LE(solution.torque[1], left / (2 * 0.1) + 1e-12);
   }
 }
 
@@ -401,7 +409,7 @@ void aWarmStartSavesSteps(const HqpOptions& options) {
 
 TEST(Hqp, AWarmStartSavesStepsAndChangesNothing) { aWarmStartSavesSteps({}); }
 
-TEST(Hqp, AWarmStartSavesStepsOfDampedLevelsToo) { aWarmStartSavesSteps({.damping = 0.1}); }
+TEST(Hqp, AWarmStartSavesStepsOfDampedLevelsToo) { aWarmStartSavesSteps(damped); }
 
 // Whatever rows a tick is told to start with: those of a robot that wanted the opposite, of one that wanted nothing, and
 // of one with other limits.
@@ -441,7 +449,7 @@ void aWrongWarmStartChangesNothing(const HqpOptions& options) {
 
 TEST(Hqp, AWrongWarmStartChangesNothing) { aWrongWarmStartChangesNothing({}); }
 
-TEST(Hqp, AWrongWarmStartChangesNothingOfDampedLevels) { aWrongWarmStartChangesNothing({.damping = 0.1}); }
+TEST(Hqp, AWrongWarmStartChangesNothingOfDampedLevels) { aWrongWarmStartChangesNothing(damped); }
 
 // Limits may take directions from a level; the ranks are those of its rows alone, in the first tick as in the next.
 TEST(Hqp, RanksAreThoseOfTheRowsWhateverLimitsHold) {
@@ -502,7 +510,7 @@ void lawNine(const HqpOptions& options) {
 
 TEST(Hqp, Law9EveryTickIsFiniteAndWithinLimitsInBoundedWork) { lawNine({}); }
 
-TEST(Hqp, Law9HoldsForDampedLevels) { lawNine({.damping = 0.1}); }
+TEST(Hqp, Law9HoldsForDampedLevels) { lawNine(damped); }
 
 }  // namespace
 }  // namespace tactus::hqp
