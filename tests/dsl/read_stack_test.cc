@@ -235,7 +235,9 @@ TEST(ReadStack, AFrameStartsOffItsPlaceByWhatTheSeedDraws) {
     const Eigen::Isometry3d there = pose(stack.start(seed));
     most = most.cwiseMax((there.translation() - from.translation()).cwiseAbs());
     const Eigen::AngleAxisd turn(there.linear() * from.linear().transpose());
-    if (std::abs(turn.angle()) > 1e-6) EXPECT_NEAR(std::abs(turn.axis().z()), 1, 1e-4) << "about the vertical alone";
+    if (std::abs(turn.angle()) > 1e-6) {
+      EXPECT_NEAR(std::abs(turn.axis().z()), 1, 1e-4) << "about the vertical alone";
+    }
     most_turn = std::max(most_turn, std::abs(turn.angle()));
   }
   EXPECT_TRUE((most.array() <= Eigen::Array3d(0.03, 0.02, 0.01) + 1e-6).all()) << most.transpose();

@@ -110,8 +110,12 @@ TEST(Gap, OfBoxesIsBelowZeroWhereTheyOverlap) {
       for (double v = -0.5; v <= 0.501; v += 0.05)
         for (double w = -0.5; w <= 0.501; w += 0.05)
           inside = inside || ((X * Vector3d(u * 0.6, v * 0.4, w * 0.2)).cwiseAbs().array() <= 0.5 * size.array()).all();
-    if (inside) EXPECT_LE(gap, 1e-9) << trial;
-    if (gap < -0.03) EXPECT_TRUE(inside) << trial;
+    if (inside) {
+      EXPECT_LE(gap, 1e-9) << trial;
+    }
+    if (gap < -0.03) {
+      EXPECT_TRUE(inside) << trial;
+    }
     overlapping += inside;
   }
   EXPECT_GT(overlapping, 50);
