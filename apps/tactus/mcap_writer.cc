@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 
 #include "framework/runtime/file_error.h"
 
@@ -75,8 +74,8 @@ std::uint32_t checksum(std::string_view bytes, std::uint32_t sum = 0) {
 
 }  // namespace
 
-McapWriter::McapWriter(const std::string& path, const std::string& library) : path_(path), fresh_(path + ".new") {
-  descriptor_ = ::open(fresh_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+McapWriter::McapWriter(const std::string& path, const std::string& library) : path_(path) {
+  descriptor_ = ::open((path + runtime::unfinished_suffix).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throw runtime::FileError(path_, "cannot be created", errno);
   chunk_.reserve(2 * chunk_size);
   try {
@@ -84,7 +83,7 @@ McapWriter::McapWriter(const std::string& path, const std::string& library) : pa
     put(record(Record::header, Bytes().text("").text(library)));
   } catch (...) {
     ::close(descriptor_);
-    ::unlink(fresh_.c_str());
+    runtime::dropUnfinished(path_);
     throw;
   }
 }
@@ -92,7 +91,7 @@ McapWriter::McapWriter(const std::string& path, const std::string& library) : pa
 McapWriter::~McapWriter() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  ::unlink(fresh_.c_str());
+  runtime::dropUnfinished(path_);
 }
 
 void McapWriter::put(std::string_view bytes) {
@@ -223,11 +222,12 @@ void McapWriter::close() {
   put(magic);
   const int descriptor = descriptor_;
   descriptor_ = -1;
-  if (::close(descriptor) != 0 || std::rename(fresh_.c_str(), path_.c_str()) != 0) {
+  if (::close(descriptor) != 0) {
     const int error = errno;
-    ::unlink(fresh_.c_str());
+    runtime::dropUnfinished(path_);
     throw runtime::FileError(path_, "cannot be written", error);
   }
+  runtime::finishFile(path_);
 }
 
 }  // namespace tactus::app

@@ -44,7 +44,7 @@ class McapWriter {
   void put(std::string_view bytes);
   std::string statistics() const;
 
-  std::string path_, fresh_;
+  std::string path_;
   int descriptor_ = -1;
   std::uint64_t written_ = 0;                                      ///< bytes
   std::uint32_t checksum_ = 0;                                     ///< of what was put since it was 0
